@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the graphics state hands finished work to. A renderer registers one; tests register their own.
+#pragma once
+
+#include "ribtools/scene.h"
+
+#include <memory>
+
+namespace rib {
+
+struct TextureRequest { // MakeTexture and its relatives
+    std::string kind;   // request name
+    std::vector<std::string> files; // sources, then the destination
+    std::vector<std::string> strings;
+    std::vector<float> floats;
+    ParamList params;
+    Options options;
+    base::SourcePos pos;
+};
+
+class Backend {
+public:
+    virtual ~Backend() = default;
+    // A world is complete. False asks the reader to stop (interrupted, out of disk ...).
+    virtual bool render(std::unique_ptr<Scene> scene) = 0;
+    virtual bool make_texture(const TextureRequest& request) = 0;
+};
+
+} // namespace rib

@@ -72,6 +72,10 @@ public:
     // Loads one object file; nullptr and a message on failure. Checks the fingerprint before anything else.
     const ShaderObject* load(const std::string& slo_path, base::SourcePos pos);
 
+    // An object linked into the program (the built-in default surface; tests): checked like a loaded one, never
+    // closed. object must outlive the library.
+    const ShaderObject* adopt(const sl_object& object);
+
     StringTable& strings() { return strings_; }
 
 private:

@@ -32,6 +32,9 @@ struct ParamDecl {
 struct Param {
     std::string name; // without inline declaration
     ParamDecl decl;
+    // The name was declared nowhere: decl is guessed from the value (numbers: float, strings: string). A shader
+    // call's parameter takes its type from the shader; BADTOKEN only if the shader lacks it.
+    bool guessed = false;
     std::vector<float> floats;         // float, color, point, vector, normal, hpoint, matrix, mpoint
     std::vector<std::int32_t> ints;    // integer
     std::vector<std::string> strings;  // string
@@ -39,6 +42,11 @@ struct Param {
 
     // Elements of decl.type[array_length] that the value holds.
     [[nodiscard]] std::size_t num_items() const;
+    // Equal name, type and values; the place is not compared.
+    friend bool operator==(const Param& a, const Param& b) {
+        return a.name == b.name && a.decl == b.decl && a.floats == b.floats && a.ints == b.ints &&
+               a.strings == b.strings;
+    }
 };
 
 struct ParamList {
@@ -49,6 +57,7 @@ struct ParamList {
     [[nodiscard]] float get_float(std::string_view name, float fallback) const;
     [[nodiscard]] int get_int(std::string_view name, int fallback) const;
     [[nodiscard]] std::string get_string(std::string_view name, std::string_view fallback) const;
+    friend bool operator==(const ParamList&, const ParamList&) = default;
 };
 
 } // namespace rib

@@ -16,6 +16,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -24,6 +25,46 @@ namespace rib {
 constexpr float ri_infinity = 1.0e38f;
 constexpr float ri_epsilon = 1.0e-10f;
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+
+// A value that copies of its owner share until one of them edits it: attribute states differ in little, and there may
+// be millions of them. Reads like the value; edit() gives an unshared one to write to.
+template <class T> class Shared {
+public:
+    Shared() = default;
+    Shared(T value) : p_(std::make_shared<T>(std::move(value))) {}
+
+    [[nodiscard]] const T& get() const {
+        static const T empty{};
+        return p_ ? *p_ : empty;
+    }
+    const T& operator*() const { return get(); }
+    const T* operator->() const { return &get(); }
+    operator const T&() const { return get(); }
+    T& edit() {
+        if (!p_) {
+            p_ = std::make_shared<T>();
+        } else if (p_.use_count() > 1) {
+            p_ = std::make_shared<T>(*p_);
+        }
+        return *p_;
+    }
+
+    // Containers: reading as usual.
+    [[nodiscard]] auto begin() const { return get().begin(); }
+    [[nodiscard]] auto end() const { return get().end(); }
+    [[nodiscard]] std::size_t size() const { return get().size(); }
+    [[nodiscard]] bool empty() const { return get().empty(); }
+    [[nodiscard]] const auto& operator[](std::size_t i) const { return get()[i]; }
+    template <class Key> [[nodiscard]] auto find(const Key& key) const { return get().find(key); }
+
+    [[nodiscard]] bool same_object(const Shared& other) const { return p_ == other.p_; }
+    friend bool operator==(const Shared& a, const Shared& b) {
+        return a.p_ == b.p_ || a.get() == b.get();
+    }
+
+private:
+    std::shared_ptr<T> p_;
+};
 
 // --- transforms -------------------------------------------------------------------------------------------------
 
@@ -47,6 +88,7 @@ struct ShaderCall {
     std::string name; // "" = none; as written, path and suffix included
     ParamList params;
     TransformId world_from_shader = 0; // for lights made before WorldBegin: camera-from-shader, see Light
+    std::uint32_t same_params_as = none; // first ShaderCall of the scene with equal name and params
     base::SourcePos pos;
 };
 using ShaderId = std::uint32_t; // index into Scene::shaders; none = no shader
@@ -66,14 +108,18 @@ using LightId = std::uint32_t;
 enum class Interpolation : std::uint8_t { Constant, Smooth };
 
 struct Basis {
-    std::array<float, 16> u, v; // rows = powers, columns = control points (ri.md 11.4)
+    // Rows = powers, columns = control points (ri.md 11.4). Default: bezier.
+    std::array<float, 16> u{-1, 3, -3, 1, 3, -6, 3, 0, -3, 3, 0, 0, 1, 0, 0, 0};
+    std::array<float, 16> v = u;
     int ustep = 3, vstep = 3;
+    friend bool operator==(const Basis&, const Basis&) = default;
 };
 
 struct TrimCurve {
     std::vector<int> ncurves, order, n;
     std::vector<float> knot, min, max, u, v, w;
     [[nodiscard]] bool empty() const { return ncurves.empty(); }
+    friend bool operator==(const TrimCurve&, const TrimCurve&) = default;
 };
 
 // Attribute state of one primitive. Shared: consecutive primitives with equal state have the same index.
@@ -82,7 +128,7 @@ struct Attributes {
     std::array<float, 3> opacity{1, 1, 1};
     std::array<float, 8> texture_coordinates{0, 0, 1, 0, 0, 1, 1, 1};
     ShaderId surface = none, displacement = none, atmosphere = none, interior = none, exterior = none;
-    std::vector<LightId> lights; // on, in declaration order
+    Shared<std::vector<LightId>> lights; // on, in declaration order
     LightId area_light = none;
     float shading_rate = 1;
     Interpolation interpolation = Interpolation::Constant;
@@ -94,14 +140,15 @@ struct Attributes {
     bool has_detail = false;
     float detail_area_px = ri_infinity; // raster area of the Detail box, times RelativeDetail
     std::array<float, 4> detail_range{0, 0, ri_infinity, ri_infinity};
-    std::map<std::string, float> approximation; // GeometricApproximation
-    Basis basis;
-    std::shared_ptr<const TrimCurve> trim;
+    Shared<std::map<std::string, float>> approximation; // GeometricApproximation
+    Shared<Basis> basis;
+    Shared<TrimCurve> trim;
     // Attribute "group" "name": key "group:name"; standard ones with their table defaults applied by attribute().
-    std::map<std::string, Param> user;
-    std::map<std::string, TransformId> scoped_systems; // ScopedCoordinateSystem, world_from_*
+    Shared<std::map<std::string, Param>> user;
+    Shared<std::map<std::string, TransformId>> scoped_systems; // ScopedCoordinateSystem, world_from_*
 
     [[nodiscard]] const Param* find(const std::string& group_name) const;
+    friend bool operator==(const Attributes&, const Attributes&) = default;
 };
 
 // --- primitives -------------------------------------------------------------------------------------------------
@@ -201,7 +248,7 @@ struct SolidNode {
 // ObjectBegin..ObjectEnd: geometry shared by its instances.
 struct Object {
     std::string handle;
-    std::vector<Primitive> primitives;
+    Shared<std::vector<Primitive>> primitives;
 };
 
 // ObjectInstance. Member i of the object is drawn with attributes[i]: the attributes at the instance, with those

@@ -39,7 +39,8 @@ enum class VarKind : std::uint8_t {
 struct Var {
     std::string name; // unique in the program; Temps are t1, t2, ...
     Type type = Type::Float;
-    Detail detail = Detail::Varying; // Locals and Temps: result of the uniform/varying inference
+    Detail detail = Detail::Varying; // Locals and Temps: result of the uniform/varying inference. A uniform
+                                     // variable is assigned only uniform values, under uniform control.
     int array_length = 0;            // 0: not an array
     VarKind kind = VarKind::Temp;
     int index = -1;
@@ -55,18 +56,21 @@ constexpr VarId no_var = -1;
 
 enum class Op : std::uint8_t {
     // dst = op(args). Numeric operands may differ in type: a float operand of a triple operation is spread.
-    Copy,       // dst = a; converts float->triple (spread), float->matrix (diagonal), P/V/N/C by component
-    Add, Sub, Mul, Div, Neg, // component-wise; Matrix: Mul, Div (a * inverse(b)), Neg
+    Copy,       // dst = a; converts float->triple (spread), float->matrix (diagonal), P/V/N/C by component;
+                // dst array: a is an array of the same length, or one value given to every element
+    Add, Sub, Mul, Div, Neg, // component-wise; Matrix: Mul, Div (a * inverse(b)); both operands matrices
     Dot, Cross,
     Eq, Ne, Lt, Le, Gt, Ge,  // float 0/1; triples: all components (Ne: any); Eq, Ne also matrix and string
     And, Or, Not,            // of floats; both operands are already evaluated
-    Select,     // dst = a != 0 ? b : c
+    Select,     // dst = a != 0 ? b : c; b and c have the class of dst (float, triple, matrix, string)
     Triple,     // dst = (a, b, c)
     Matrix16,   // dst = 16 floats
     Component,  // dst = component (args[1] constant or float) of triple args[0]
     Load,       // dst = array args[0] [ args[1] ]; index truncated toward zero, clamped to the array
     Store,      // array dst [ args[0] ] = args[1]
-    Call,       // dst (or none) = builtin row `builtin`(args); output arguments are assigned in place
+    Call,       // dst (or none) = builtin row `builtin`(args); output arguments are assigned in place. Arguments
+                // are already of the class the row wants (float, triple, matrix, string); rows with SL_CHANNEL
+                // have the channel (float) after the name; then repetitions (+), name/value pairs (*)
     // control; bodies as noted
     If,         // args[0] condition; bodies[0] then, bodies[1] else (may be empty)
     Loop,       // bodies[0] computes the condition args[0]; bodies[1] the body; bodies[2] the step (Continue goes there)
@@ -77,7 +81,7 @@ enum class Op : std::uint8_t {
     Illuminance, // args: P [, axis, angle]; category in args of name `category`: see has_*; bodies[0]
     Illuminate, // args: from [, axis, angle]; bodies[0]
     Solar,      // args: [axis, angle]; bodies[0]
-    Gather      // as a call with bodies[0] hit, bodies[1] miss
+    Gather      // args: category, P, direction, angle, samples; options as pairs; bodies[0] hit, bodies[1] miss
 };
 
 struct Stmt {
@@ -87,7 +91,7 @@ struct Stmt {
     int builtin = -1;        // Call, Gather: row in sl_builtins.def
     int levels = 1;          // Break, Continue, Leave
     VarId category = no_var; // Illuminance: string operand, or no_var
-    // Illuminance options as pairs: "lightcache", "light:x" (dst variable), "send:light:x"
+    // Illuminance options as pairs: "lightcache", "light:x" (variable that is set), "send:light:x"; Gather alike
     std::vector<std::pair<std::string, VarId>> options;
     std::vector<std::vector<Stmt>> bodies;
     Loc loc;

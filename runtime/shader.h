@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiled shaders as the engine uses them: found on a search path, loaded once, instanced with bound parameters.
+// Compiled shaders as the engine uses them: found on a search path, loaded once, instanced with
+// bound parameters.
 //
-// ShaderLibrary owns objects for a whole run and is safe from any thread; objects stay loaded until it goes. Where
-// only `name.sl` is found it is compiled into the content-addressed user cache through the compile function it
-// was given (the runtime does not know slc).
+// ShaderLibrary owns objects for a whole run and is safe from any thread; objects stay loaded until
+// it goes. Where only `name.sl` is found it is compiled into the content-addressed user cache
+// through the compile function it was given (the runtime does not know slc).
 #pragma once
 
 #include "runtime/abi/sl_abi.h"
 #include "runtime/base/diag.h"
 
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -21,20 +24,38 @@
 
 namespace rt {
 
-// Strings of a run: equal texts share one pointer (sl_string).
+// Strings of a run: equal texts share one pointer (sl_string). Safe from any thread; pointers live
+// as long as the table.
 class StringTable {
 public:
+    // Text is taken up to its first NUL: a sl_string ends there.
     sl_string intern(std::string_view text);
 
 private:
+    struct Hash {
+        using is_transparent = void;
+        std::size_t operator()(std::string_view text) const {
+            return std::hash<std::string_view>()(text);
+        }
+    };
     std::mutex mutex_;
-    std::unordered_set<std::string> texts_; // node-based: addresses stay
+    std::unordered_set<std::string, Hash, std::equal_to<>> texts_; // node-based: addresses stay
 };
 
 // One loaded .slo.
 class ShaderObject {
 public:
+    // nullptr, with the reason in `why`, when the file is missing, truncated, damaged, made for
+    // another ABI, or holds nothing this processor can run. Nothing in the file is executed before
+    // its seal has been checked.
+    static std::unique_ptr<ShaderObject> open(const std::string& slo_path, StringTable& strings,
+                                              std::string& why);
+    // The same for an object linked into the program.
+    static std::unique_ptr<ShaderObject> adopt(const sl_object& object, StringTable& strings,
+                                               std::string& why);
     ~ShaderObject();
+    ShaderObject(const ShaderObject&) = delete;
+    ShaderObject& operator=(const ShaderObject&) = delete;
     [[nodiscard]] const sl_object& object() const { return *object_; }
     // The best variant this processor can run.
     [[nodiscard]] const sl_variant& variant() const { return *variant_; }
@@ -43,9 +64,10 @@ public:
     [[nodiscard]] int find_param(std::string_view name) const;
 
 private:
-    friend class ShaderLibrary;
     ShaderObject() = default;
-    void* handle_ = nullptr;
+    bool take(const sl_object& object, StringTable& strings, std::string& why);
+
+    void* handle_ = nullptr; // null for an adopted object
     const sl_object* object_ = nullptr;
     const sl_variant* variant_ = nullptr;
     std::vector<sl_string> strings_;
@@ -54,26 +76,31 @@ private:
 class ShaderLibrary {
 public:
     struct Config {
-        std::vector<std::string> search_path;   // directories (or library files), in order
-        std::string cache_dir;                  // "" = no cache, compile to a temporary file
+        std::vector<std::string> search_path; // directories, in order
+        std::string cache_dir; // see default_cache_dir(); "" = compile to a temporary file
         // Compiles an .sl file into an .slo at the given path; false after reporting why not.
-        std::function<bool(const std::string& sl_path, const std::string& slo_path, base::Diag&)> compile;
-        // Identifies compiler, flags and tables for the cache key (preprocessed text is added to it).
-        std::function<std::optional<std::string>(const std::string& sl_path, base::Diag&)> cache_key;
+        std::function<bool(const std::string& sl_path, const std::string& slo_path, base::Diag&)>
+            compile;
+        // Identifies compiler, flags and tables for the cache key (preprocessed text is added to
+        // it).
+        std::function<std::optional<std::string>(const std::string& sl_path, base::Diag&)>
+            cache_key;
     };
 
     ShaderLibrary(Config config, StringTable& strings, base::Diag& diag);
     ~ShaderLibrary();
 
-    // By the name of a shader call: path components bypass the search, a suffix .sl .slo .slc .slx is stripped.
-    // nullptr after one message when missing, broken, of another ABI, or of another type than wanted.
+    // By the name of a shader call: path components bypass the search, a suffix .sl .slo .slc .slx
+    // is stripped. nullptr after one message when missing, broken, of another ABI, or of another
+    // type than wanted.
     const ShaderObject* find(std::string_view name, sl_shader_type wanted, base::SourcePos pos);
 
-    // Loads one object file; nullptr and a message on failure. Checks the fingerprint before anything else.
+    // Loads one object file; nullptr and a message on failure. Checks the fingerprint before
+    // anything else.
     const ShaderObject* load(const std::string& slo_path, base::SourcePos pos);
 
-    // An object linked into the program (the built-in default surface; tests): checked like a loaded one, never
-    // closed. object must outlive the library.
+    // An object linked into the program (the built-in default surface; tests): checked like a
+    // loaded one, never closed. object must outlive the library.
     const ShaderObject* adopt(const sl_object& object);
 
     StringTable& strings() { return strings_; }
@@ -97,23 +124,38 @@ struct BoundValue {
 // A shader with its parameters: immutable after creation, shared by all threads.
 class ShaderInstance {
 public:
-    // Mismatched or unknown values are reported once and left out (ri.md 16.8). services/engine evaluate
-    // defaults such as `point "shader" (0,0,0)`; engine must know this instance's spaces.
+    // Mismatched or unknown values are reported once and left out (ri.md 16.8). services/engine
+    // evaluate defaults such as `point "shader" (0,0,0)`; engine must know this instance's spaces.
     ShaderInstance(const ShaderObject& object, std::span<const BoundValue> values,
-                   const sl_services& services, void* engine, StringTable& strings, base::Diag& diag);
+                   const sl_services& services, void* engine, StringTable& strings,
+                   base::Diag& diag);
 
     [[nodiscard]] const ShaderObject& shader() const { return object_; }
     [[nodiscard]] const sl_object& object() const { return object_.object(); }
-    // The finished parameter block: uniform values in place; varying parameters point to nothing and have their
-    // uniform value in the staging slot (offset + 16). Batches copy it.
+    // The finished parameter block: uniform values in place; varying parameters point to nothing
+    // and have their uniform value in the staging slot (offset + 16). Batches copy it.
     [[nodiscard]] std::span<const std::byte> params() const;
     // Uniform value of a parameter (message passing, __category, ...): floats or an sl_string.
     [[nodiscard]] const float* uniform_floats(int param) const;
     [[nodiscard]] sl_string uniform_string(int param) const;
 
 private:
+    [[nodiscard]] std::byte* value_slot(const sl_param& param);
+    [[nodiscard]] const std::byte* value_slot(const sl_param& param) const;
+    bool bind(const BoundValue& value, StringTable& strings, base::Diag& diag);
+
     const ShaderObject& object_;
     std::vector<std::byte> params_;
+    std::vector<std::uint8_t> bound_;
 };
+
+// Where compiled shaders are kept between runs: $PERIGEE_CACHE, else $XDG_CACHE_HOME/perigee, else
+// ~/.cache/perigee;
+// "" when there is no place for it.
+[[nodiscard]] std::string default_cache_dir();
+
+// "float[3]", "color" ...: how messages and slctell name a type.
+[[nodiscard]] std::string type_text(int type, int array_length);
+[[nodiscard]] int components_of(int type);
 
 } // namespace rt

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// One .slo file becomes one ShaderObject. The only caller of dlopen.
+// The seal (base/seal.h) is checked on the bytes of the file first: a wrong fingerprint, a
+// truncated or a damaged file never reaches the dynamic linker. The descriptor's own fingerprint
+// and counts are checked after it.
+#include "runtime/base/file.h"
+#include "runtime/base/seal.h"
+#include "runtime/shader.h"
+#include "sl_fingerprint.h"
+
+#include <cstring>
+#include <dlfcn.h>
+
+namespace rt {
+
+namespace {
+
+// Generous; a larger count means that the descriptor is not one.
+constexpr int max_count = 1 << 16;
+
+bool runs_here(const sl_variant& variant) {
+    switch (variant.isa) {
+    case SL_ISA_any:
+        return true;
+    case SL_ISA_avx2:
+        return __builtin_cpu_supports("avx2") != 0;
+    default:
+        return false;
+    }
+}
+
+const sl_variant* best_variant(const sl_object& object) {
+    for (int i = 0; i < object.num_variants; ++i) {
+        if (runs_here(*object.variants[i])) {
+            return object.variants[i];
+        }
+    }
+    return nullptr;
+}
+
+std::string why_not_sealed(const std::string& path) {
+    const auto bytes = base::read_file(path);
+    if (!bytes) {
+        return "cannot be read";
+    }
+    switch (base::check_seal(*bytes, SL_ABI_FINGERPRINT)) {
+    case base::SealState::Good:
+        return {};
+    case base::SealState::Missing:
+        return "is no shader object of slc, or is truncated";
+    case base::SealState::Damaged:
+        return "is damaged: its content does not match its seal";
+    case base::SealState::OtherFingerprint:
+        return "was compiled by another version of slc (its ABI fingerprint differs); compile it "
+               "again";
+    }
+    return "cannot be checked";
+}
+
+bool plausible(const sl_object& object) {
+    const auto counted = [](int n, const void* p) {
+        return n >= 0 && n < max_count && (n == 0 || p);
+    };
+    return object.name && object.type >= 0 && object.type <= SL_SHADER_transformation &&
+           counted(object.num_params, object.params) &&
+           counted(object.num_strings, object.strings) &&
+           counted(object.num_variants, object.variants);
+}
+
+} // namespace
+
+std::unique_ptr<ShaderObject> ShaderObject::open(const std::string& slo_path, StringTable& strings,
+                                                 std::string& why) {
+    why = why_not_sealed(slo_path);
+    if (!why.empty()) {
+        return nullptr;
+    }
+    // dlopen searches the system's libraries for names without a slash.
+    const std::string file = slo_path.find('/') == std::string::npos ? "./" + slo_path : slo_path;
+    std::unique_ptr<ShaderObject> shader(new ShaderObject);
+    shader->handle_ = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (!shader->handle_) {
+        const char* reason = ::dlerror();
+        why = std::string("cannot be loaded: ") + (reason ? reason : "unknown reason");
+        return nullptr;
+    }
+    const auto* object =
+        static_cast<const sl_object*>(::dlsym(shader->handle_, "sl_shader_object"));
+    if (!object) {
+        why = "exports no sl_shader_object";
+        return nullptr;
+    }
+    return shader->take(*object, strings, why) ? std::move(shader) : nullptr;
+}
+
+std::unique_ptr<ShaderObject> ShaderObject::adopt(const sl_object& object, StringTable& strings,
+                                                  std::string& why) {
+    std::unique_ptr<ShaderObject> shader(new ShaderObject);
+    return shader->take(object, strings, why) ? std::move(shader) : nullptr;
+}
+
+bool ShaderObject::take(const sl_object& object, StringTable& strings, std::string& why) {
+    if (!object.fingerprint || std::strcmp(object.fingerprint, SL_ABI_FINGERPRINT) != 0) {
+        why = "does not carry this version's ABI fingerprint; compile it again";
+        return false;
+    }
+    if (!plausible(object)) {
+        why = "has a descriptor that makes no sense";
+        return false;
+    }
+    object_ = &object;
+    variant_ = best_variant(object);
+    if (!variant_) {
+        why = "has no code for this processor (no AVX2 here); compile it again on this machine";
+        return false;
+    }
+    for (int i = 0; i < object.num_strings; ++i) {
+        strings_.push_back(strings.intern(object.strings[i]));
+    }
+    return true;
+}
+
+ShaderObject::~ShaderObject() {
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) // reports must name shader code
+    if (handle_) {
+        ::dlclose(handle_);
+    }
+#endif
+}
+
+int ShaderObject::find_param(std::string_view name) const {
+    for (int i = 0; i < object_->num_params; ++i) {
+        if (object_->params[i].name == name) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+} // namespace rt

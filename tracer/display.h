@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Writing pictures: one Display request and one Image in, one file out (TIFF, PNG, OpenEXR).
+//
+// Files appear under their final name only when complete. Every failure is a message with the place
+// of the Display request and a result; exceptions and longjmp of the libraries stay inside their
+// one file each. Source: ri.md 6.4, 9.5; decisions film-005 to film-007.
+#pragma once
+
+#include "ribtools/scene.h"
+#include "runtime/base/diag.h"
+#include "runtime/base/mat.h"
+#include "tracer/camera.h"
+#include "tracer/film.h"
+#include "tracer/quantize.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace trace {
+
+enum class DisplayResult : std::uint8_t {
+    Written,
+    Skipped, // a driver that writes nothing here (null, framebuffer, shadow ...), or nothing to
+             // write
+    Failed   // the environment failed: exit code 3
+};
+
+// What a file says about the picture besides its pixels.
+struct PictureInfo {
+    int xres = 0, yres = 0;
+    double pixel_aspect = 1;
+    base::Mat4 camera_from_world, ndc_from_world;
+    Exposure exposure;
+};
+[[nodiscard]] PictureInfo picture_info(const Camera& camera, const Exposure& exposure);
+
+// Writes the image to the file the request names. The image is exposed and has been through the
+// imager.
+[[nodiscard]] DisplayResult write_display(const rib::Display& display, const rib::Options& options,
+                                          const Image& image, const PictureInfo& info,
+                                          base::Diag& diag);
+
+// The display for `-o FILE`, or for a RIB without Display: format by extension, TIFF without one.
+[[nodiscard]] rib::Display default_display(std::string file, std::string mode);
+
+} // namespace trace

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+// The film: samples of buckets in, filtered pixels out.
+//
+// Buckets partition the rendered pixels (crop and picture) along a grid aligned to the whole frame;
+// those at the border also own the samples that filters reach beyond it. A bucket is filtered by
+// the thread that completes its neighbourhood, and samples are released when nobody needs them.
+// Each pixel gathers its samples in one fixed order, so bucket order, threads and crop windows
+// never change a byte (film-003). Source: ri.md 9.
+#pragma once
+
+#include "ribtools/scene.h"
+#include "runtime/base/diag.h"
+#include "tracer/camera.h"
+#include "tracer/filter.h"
+#include "tracer/pixel_range.h"
+#include "tracer/sampler.h"
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <vector>
+
+namespace trace {
+
+// What one sample saw, composited front to back. Color premultiplied by opacity. An uncovered
+// sample is as initialised.
+struct alignas(32) Sample {
+    float color[3] = {0, 0, 0};
+    float opacity[3] = {0, 0, 0};
+    float one = 1; // summed along with the rest: gives the sum of the weights. Leave it alone.
+    float spare = 0;
+};
+static_assert(sizeof(Sample) == 32);
+
+// The samples of one bucket, in the order of the SampleBlock of the same pixels.
+struct SampleBuffer {
+    PixelRange pixels;
+    std::vector<Sample> samples;
+    std::vector<float> z;     // camera depth; infinity where uncovered
+    int num_extra = 0;        // further channels (AOVs) per sample
+    std::vector<float> extra; // [sample][channel]
+};
+
+enum class DepthFilter : std::uint8_t { Min, Max, Average };
+// Hider "depthfilter"; others are reported and replaced by min.
+[[nodiscard]] DepthFilter depth_filter(const rib::Options& options, base::Diag& diag);
+
+// Planes of a finished picture. OR OG OB are the filtered opacities, A = their mean (ri.md 9.1); an
+// imager may change all of them.
+enum class Plane : std::uint8_t { R, G, B, OR, OG, OB, A, Z, Count };
+struct Image {
+    PixelRange pixels; // in the frame; planes hold exactly these, row by row
+    std::array<std::vector<float>, static_cast<std::size_t>(Plane::Count)> planes;
+    std::vector<std::vector<float>> extra;
+
+    [[nodiscard]] std::span<float> plane(Plane p) { return planes[static_cast<std::size_t>(p)]; }
+    [[nodiscard]] std::span<const float> plane(Plane p) const {
+        return planes[static_cast<std::size_t>(p)];
+    }
+};
+
+// Depth of a pixel without covered samples.
+constexpr float uncovered_z = std::numeric_limits<float>::infinity();
+
+struct FilmSettings {
+    int bucket_x = 16, bucket_y = 16; // pixels
+    DepthFilter depth = DepthFilter::Min;
+    int num_extra = 0;
+};
+// Option "limits" "bucketsize", Hider "depthfilter".
+[[nodiscard]] FilmSettings film_settings(const rib::Options& options, base::Diag& diag);
+
+class Film {
+public:
+    // nullptr when memory does not suffice, after a message (Code::NoMem: exit code 3).
+    // sampler and weights must outlive the film.
+    static std::unique_ptr<Film> create(const Raster& raster, const Sampler& sampler,
+                                        const FilterWeights& weights, const FilmSettings& settings,
+                                        base::Diag& diag);
+    ~Film();
+    Film(const Film&) = delete;
+    Film& operator=(const Film&) = delete;
+
+    // Buckets are numbered row by row; render them in any order, each once.
+    [[nodiscard]] std::size_t num_buckets() const;
+    // The pixels whose samples the bucket owns: what Sampler::fill is asked for.
+    [[nodiscard]] PixelRange sample_pixels(std::size_t bucket) const;
+
+    // A buffer for a bucket, every sample uncovered. Thread-safe.
+    [[nodiscard]] SampleBuffer buffer(std::size_t bucket) const;
+    // Hands the samples of a bucket over. Filters every bucket that became complete. Thread-safe.
+    // Samples that are not finite are replaced by 0 and counted.
+    void submit(std::size_t bucket, SampleBuffer&& samples);
+
+    [[nodiscard]] bool complete() const;
+    [[nodiscard]] std::uint64_t num_bad_samples() const { return num_bad_; }
+    // Bytes of samples held now, and at most so far.
+    [[nodiscard]] std::size_t bytes_held() const { return bytes_held_; }
+    [[nodiscard]] std::size_t peak_bytes() const { return bytes_peak_; }
+
+    // The crop range; pixels of buckets that are not filtered yet (or lie beyond the picture) are
+    // empty. Read it when no thread submits.
+    [[nodiscard]] const Image& image() const { return image_; }
+    [[nodiscard]] Image& image() { return image_; }
+
+private:
+    struct Bucket;
+    Film(const Raster& raster, const Sampler& sampler, const FilterWeights& weights,
+         const FilmSettings& settings);
+    void make_buckets(const PixelRange& rendered);
+    [[nodiscard]] std::vector<std::size_t> neighbours(std::size_t bucket) const;
+    void filter_bucket(std::size_t bucket);
+    void release(std::size_t bucket);
+
+    const Sampler& sampler_;
+    const FilterWeights& weights_;
+    FilmSettings settings_;
+    int columns_ = 0, rows_ = 0, near_x_ = 1, near_y_ = 1;
+    std::vector<Bucket> buckets_;
+    std::size_t num_done_ = 0;
+    mutable std::mutex mutex_;
+    Image image_;
+    std::atomic<std::uint64_t> num_bad_{0};
+    std::atomic<std::size_t> bytes_held_{0}, bytes_peak_{0};
+};
+
+} // namespace trace

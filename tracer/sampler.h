@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// Samples of pixels: position in the pixel, time, lens position, seed.
+//
+// Every value is a pure function of (pixel in the whole frame, sample index, dimension): crop
+// windows, buckets and threads have no influence. A dimension is a table of precomputed patterns,
+// each a correlated multi-jittered set of nx*ny points ([Kensler13]); a hash of the pixel picks the
+// pattern, so that filter weights can be tabulated per pattern (film-002). Immutable; safe from any
+// thread.
+#pragma once
+
+#include "ribtools/scene.h"
+#include "runtime/base/diag.h"
+#include "tracer/pixel_range.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace trace {
+
+struct SamplerSettings {
+    int nx = 2, ny = 2;
+    float jitter = 1; // 0: regular grid; between: part of the way from the centre of the cell
+    float shutter_open = 0, shutter_close = 0;
+    bool wants_lens = false;
+};
+// From PixelSamples, Hider "jitter", Shutter and DepthOfField. Excessive sample counts are reported
+// and limited.
+[[nodiscard]] SamplerSettings sampler_settings(const rib::Options& options, base::Diag& diag);
+
+// Samples of a rectangle of pixels, structure of arrays: pixels row by row, samples in index order.
+// Arrays are padded to a multiple of eight (padding repeats the last sample).
+struct SampleBlock {
+    PixelRange pixels;
+    int per_pixel = 0;
+    std::size_t count = 0;
+    std::vector<std::int32_t> px, py;  // pixel
+    std::vector<float> x, y;           // position in the pixel, [0,1)
+    std::vector<float> time;           // in [shutter open, close]
+    std::vector<float> lens_u, lens_v; // unit square; empty if no lens was asked for
+    std::vector<std::uint32_t> seed;   // for random(): differs for every sample of the frame
+
+    [[nodiscard]] std::size_t num_packets() const { return (count + 7) / 8; }
+};
+
+class Sampler {
+public:
+    explicit Sampler(const SamplerSettings& settings);
+
+    [[nodiscard]] const SamplerSettings& settings() const { return settings_; }
+    [[nodiscard]] int per_pixel() const { return per_pixel_; }
+
+    // Reuses the block's memory.
+    void fill(const PixelRange& pixels, SampleBlock& out) const;
+
+    // Positions: pattern of a pixel, and the per_pixel() offsets of a pattern.
+    [[nodiscard]] std::size_t num_patterns() const { return num_patterns_; }
+    [[nodiscard]] std::size_t pattern(int px, int py) const;
+    [[nodiscard]] std::span<const float> pattern_x(std::size_t pattern) const;
+    [[nodiscard]] std::span<const float> pattern_y(std::size_t pattern) const;
+
+private:
+    [[nodiscard]] std::span<const float> slice(const std::vector<float>& table,
+                                               std::size_t pattern) const;
+    void fill_pixel(int px, int py, std::size_t at, SampleBlock& out) const;
+
+    SamplerSettings settings_;
+    int per_pixel_ = 4;
+    std::size_t num_patterns_ = 1, pattern_mask_ = 0;
+    bool moving_ = false;
+    std::vector<float> x_, y_, time_, lens_u_, lens_v_; // [pattern][sample]
+};
+
+} // namespace trace

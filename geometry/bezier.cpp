@@ -108,6 +108,8 @@ std::optional<SpanMap> SpanMap::bicubic(int num_points, bool periodic,
         part.t0 = static_cast<double>(a) / map.num_segments_;
         part.t1 = static_cast<double>(a + 1) / map.num_segments_;
         part.segment = a;
+        part.s0 = part.t0;
+        part.s1 = part.t1;
         map.parts_.push_back(std::move(part));
     }
     return map;
@@ -124,11 +126,9 @@ std::optional<SpanMap> SpanMap::bilinear(int num_points, bool periodic, std::str
     map.periodic_ = periodic;
     map.num_segments_ = periodic ? num_points : num_points - 1;
     for (int a = 0; a < map.num_segments_; ++a) {
-        map.parts_.push_back({{a, (a + 1) % num_points},
-                              {1, 0, 0, 1},
-                              static_cast<double>(a) / map.num_segments_,
-                              static_cast<double>(a + 1) / map.num_segments_,
-                              a});
+        const double t0 = static_cast<double>(a) / map.num_segments_;
+        const double t1 = static_cast<double>(a + 1) / map.num_segments_;
+        map.parts_.push_back({{a, (a + 1) % num_points}, {1, 0, 0, 1}, t0, t1, a, t0, t1});
     }
     return map;
 }
@@ -168,6 +168,8 @@ std::optional<SpanMap> SpanMap::nurbs(int num_points, int order, std::span<const
         part.t0 = a;
         part.t1 = b;
         part.segment = k - p;
+        part.s0 = static_cast<double>(knots[static_cast<std::size_t>(k)]);
+        part.s1 = static_cast<double>(knots[static_cast<std::size_t>(k) + 1]);
         for (int i = 0; i <= p; ++i) {
             part.input.push_back(k - p + i);
         }

@@ -25,7 +25,8 @@ public:
         std::vector<int> input;      // control point indices, already wrapped
         std::vector<double> weights; // (degree+1) rows of input.size() columns
         double t0 = 0, t1 = 1;       // the span in the parameter of the whole surface
-        int segment = 0;             // nominal segment that carries varying and uniform data
+        int segment = 0;             // nominal segment that carries varying and uniform data ...
+        double s0 = 0, s1 = 1;       // ... and the ends of that segment in the same parameter
     };
 
     // Bicubic direction with a 16-number basis (rows = powers) and step; nullopt + reason on bad

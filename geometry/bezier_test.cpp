@@ -231,9 +231,9 @@ TEST(Dice, BordersMeetWhateverTheDirectionAndTheOtherSide) {
     ASSERT_EQ(ra.at_u1, rb.at_u1);
     const auto ga = geo::dice_part(3, 3, a.data(), ra), gb = geo::dice_part(3, 3, b.data(), rb);
     const auto border = [](const geo::DicedPart& g) {
-        std::vector<base::V3f> points;
+        std::vector<base::V3d> points;
         for (int j = 0; j < g.height; ++j) {
-            const auto& p = g.P_cam[std::size_t(j * g.width + g.width - 1)];
+            const auto& p = g.P[std::size_t(j * g.width + g.width - 1)];
             if (points.empty() || !(points.back() == p)) {
                 points.push_back(p);
             }

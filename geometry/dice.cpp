@@ -50,6 +50,19 @@ double second_difference(const double* first, int degree, int step) {
     return largest;
 }
 
+double largest_twist(int degree_u, int degree_v, const double* net) {
+    const int row = degree_u + 1;
+    double twist = 0;
+    for (int j = 0; j < degree_v; ++j) {
+        for (int i = 0; i < degree_u; ++i) {
+            const double* p = net + 4 * (j * row + i);
+            twist = std::max(twist, length(project(p) - project(p + 4) - project(p + 4 * row) +
+                                           project(p + 4 * row + 4)));
+        }
+    }
+    return twist;
+}
+
 using BorderNet = std::array<double, 4 * (max_degree + 1)>;
 
 // The control points of a border curve in the order that does not depend on who asks; true if that
@@ -67,10 +80,10 @@ bool canonical_border(const double* first, int degree, int step, BorderNet& out)
 }
 
 // The point k of n on a border curve.
-base::V3f border_point(const BorderNet& net, bool reversed, int degree, int k, int n) {
+base::V3d border_point(const BorderNet& net, bool reversed, int degree, int k, int n) {
     const double x = static_cast<double>(reversed ? n - k : k) / n;
     const BezierPoint p = evaluate_part(degree, 0, net.data(), x, 0);
-    return base::V3f(p.P);
+    return p.P;
 }
 
 } // namespace
@@ -110,17 +123,10 @@ DiceRates dice_rates(int degree_u, int degree_v, const double* net, const View& 
     }
     // The twist bends both families of lines at once; a bilinear part of one quad would be two flat
     // triangles.
-    double twist = 0;
-    for (int j = 0; j < degree_v; ++j) {
-        for (int i = 0; i < degree_u; ++i) {
-            const double* p = net + 4 * (j * row + i);
-            twist = std::max(twist, length(project(p) - project(p + 4) - project(p + 4 * row) +
-                                           project(p + 4 * row + 4)));
-        }
-    }
+    const double twist_px = largest_twist(degree_u, degree_v, net) * px;
     // Diagonal deviation of a twisted quad: |twist| du dv / 4 with du dv = degree_u degree_v / (u
     // v).
-    const double cells = twist * degree_u * degree_v * px / (4 * flatness_px);
+    const double cells = twist_px * degree_u * degree_v / (4 * flatness_px);
     if (cells > r.u * double(r.v)) {
         const double grow = std::sqrt(cells / (r.u * double(r.v)));
         r.u = static_cast<int>(std::min(std::ceil(r.u * grow), double(max_segments)));
@@ -135,7 +141,7 @@ DicedPart dice_part(int degree_u, int degree_v, const double* net, const DiceRat
     grid.width = rates.u + 1;
     grid.height = rates.v + 1;
     const auto count = static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height);
-    grid.P_cam.resize(count);
+    grid.P.resize(count);
     grid.s.resize(count);
     grid.t.resize(count);
     const auto at = [&](int i, int j) {
@@ -148,7 +154,7 @@ DicedPart dice_part(int degree_u, int degree_v, const double* net, const DiceRat
             grid.s[at(i, j)] = static_cast<float>(s);
             grid.t[at(i, j)] = static_cast<float>(t);
             if (i > 0 && i < rates.u && j > 0 && j < rates.v) {
-                grid.P_cam[at(i, j)] = base::V3f(evaluate_part(degree_u, degree_v, net, s, t).P);
+                grid.P[at(i, j)] = evaluate_part(degree_u, degree_v, net, s, t).P;
             }
         }
     }
@@ -159,7 +165,7 @@ DicedPart dice_part(int degree_u, int degree_v, const double* net, const DiceRat
         const bool reversed = canonical_border(first, degree, step, curve);
         for (int i = 0; i <= n; ++i) {
             const int k = (2 * i * n_border + n) / (2 * n);
-            grid.P_cam[index(i)] = border_point(curve, reversed, degree, k, n_border);
+            grid.P[index(i)] = border_point(curve, reversed, degree, k, n_border);
             parameter[index(i)] = static_cast<float>(static_cast<double>(k) / n_border);
         }
     };
@@ -174,6 +180,29 @@ DicedPart dice_part(int degree_u, int degree_v, const double* net, const DiceRat
         net + 4 * degree_u, degree_v, row, rates.at_u1, rates.v,
         [&](int j) { return at(rates.u, j); }, grid.t);
     return grid;
+}
+
+DiceRates finest(const DiceRates& a, const DiceRates& b) {
+    return {std::max(a.u, b.u),         std::max(a.v, b.v),         std::max(a.at_v0, b.at_v0),
+            std::max(a.at_v1, b.at_v1), std::max(a.at_u0, b.at_u0), std::max(a.at_u1, b.at_u1)};
+}
+
+double chord_error(int degree_u, int degree_v, const double* net, const DiceRates& rates) {
+    const int row = degree_u + 1;
+    double bend_u = 0, bend_v = 0;
+    for (int j = 0; j <= degree_v; ++j) {
+        bend_u = std::max(bend_u, second_difference(net + 4 * row * j, degree_u, 1));
+    }
+    for (int i = 0; i <= degree_u; ++i) {
+        bend_v = std::max(bend_v, second_difference(net + 4 * i, degree_v, row));
+    }
+    const auto chord = [](double bend, int degree, double n) {
+        return degree * (degree - 1) / 8.0 * bend / (n * n);
+    };
+    // The strips at the borders are as coarse as the borders.
+    const int u = std::min(rates.at_v0, rates.at_v1), v = std::min(rates.at_u0, rates.at_u1);
+    return chord(bend_u, degree_u, u) + chord(bend_v, degree_v, v) +
+           largest_twist(degree_u, degree_v, net) * degree_u * degree_v / (4.0 * u * v);
 }
 
 } // namespace geo

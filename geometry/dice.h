@@ -15,8 +15,6 @@
 
 namespace geo {
 
-// Largest silhouette error of a diced surface, in raster pixels (design.md, section 6).
-constexpr double default_flatness_px = 0.1;
 constexpr int max_segments = 256; // per direction and part
 
 // Segments along the four border curves and inside; every border count is at most the inner one.
@@ -31,14 +29,22 @@ struct DiceRates {
                                    const View& view, double flatness_px);
 
 struct DicedPart {
-    int width = 0, height = 0;    // vertices along u and v
-    std::vector<base::V3f> P_cam; // height rows of width vertices
-    std::vector<float> s, t;      // local parameters of every vertex
+    int width = 0, height = 0; // vertices along u and v
+    std::vector<base::V3d> P;  // height rows of width vertices
+    std::vector<float> s, t;   // local parameters of every vertex
 };
 
-// Border vertices are the nearest of the border curve's own segments, so triangles there may be
-// empty; the border itself is the polyline of that curve, whatever lies on the other side.
-[[nodiscard]] DicedPart dice_part(int degree_u, int degree_v, const double* net_cam,
+// net: control points in the space of the vertices. Border vertices are the nearest of the border
+// curve's own segments, so triangles there may be empty; the border itself is the polyline of that
+// curve, whatever lies on the other side.
+[[nodiscard]] DicedPart dice_part(int degree_u, int degree_v, const double* net,
                                   const DiceRates& rates);
+
+// The larger of two rates, member by member: a part seen from several placements.
+[[nodiscard]] DiceRates finest(const DiceRates& a, const DiceRates& b);
+
+// Largest distance between the diced part and the true one, in the units of the net.
+[[nodiscard]] double chord_error(int degree_u, int degree_v, const double* net,
+                                 const DiceRates& rates);
 
 } // namespace geo

@@ -158,25 +158,45 @@ void ShadeBatch::bind_params(const Layout& layout, std::byte* memory) {
         if (p.detail != SL_DETAIL_varying) {
             continue;
         }
-        const std::byte* staged = block + p.offset + 16;
         std::byte* planes = memory + at;
-        const std::size_t n = elements_of(p);
-        if (p.type == SL_TYPE_string) {
-            auto* to = reinterpret_cast<sl_string*>(planes);
-            const auto* from = reinterpret_cast<const sl_string*>(staged);
-            for (std::size_t k = 0; k < n; ++k) {
-                std::fill_n(to + k * batch_.stride, batch_.stride, from[k]);
-            }
-            at += round_up(n * batch_.stride * sizeof(sl_string), alignment);
-        } else {
-            auto* to = reinterpret_cast<float*>(planes);
-            const auto* from = reinterpret_cast<const float*>(staged);
-            for (std::size_t k = 0; k < n; ++k) {
-                std::fill_n(to + k * batch_.stride, batch_.stride, from[k]);
-            }
-            at += round_up(n * batch_.stride * sizeof(float), alignment);
-        }
+        spread(p, planes);
+        const std::size_t unit = p.type == SL_TYPE_string ? sizeof(sl_string) : sizeof(float);
+        at += round_up(elements_of(p) * batch_.stride * unit, alignment);
         std::memcpy(block + p.offset, &planes, sizeof planes);
+    }
+}
+
+// The staged value to every point.
+void ShadeBatch::spread(const sl_param& p, std::byte* planes) {
+    const std::byte* staged = slot(p) + 16;
+    const auto fill = [&](auto* to, const auto* from) {
+        for (std::size_t k = 0; k < elements_of(p); ++k) {
+            std::fill_n(to + k * batch_.stride, batch_.stride, from[k]);
+        }
+    };
+    if (p.type == SL_TYPE_string) {
+        fill(reinterpret_cast<sl_string*>(planes), reinterpret_cast<const sl_string*>(staged));
+    } else {
+        fill(reinterpret_cast<float*>(planes), reinterpret_cast<const float*>(staged));
+    }
+}
+
+void ShadeBatch::restart() {
+    const sl_object& object = instance_->object();
+    finished_.assign(num_packets(), false);
+    std::fill_n(lit_, num_packets(), 0U);
+    std::memset(frames_, 0, frame_stride_ * num_packets());
+    for (int i = 0; i < object.num_params; ++i) {
+        const sl_param& p = object.params[i];
+        if (p.is_output == 0) {
+            continue;
+        }
+        if (p.detail == SL_DETAIL_varying) {
+            spread(p, *reinterpret_cast<std::byte**>(slot(p)));
+        } else {
+            const std::size_t unit = p.type == SL_TYPE_string ? sizeof(sl_string) : sizeof(float);
+            std::memcpy(slot(p), instance_->params().data() + p.offset, elements_of(p) * unit);
+        }
     }
 }
 

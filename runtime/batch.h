@@ -31,9 +31,19 @@ public:
     // planes.
     void begin(const ShaderInstance& instance, std::uint32_t count);
 
+    // The same points and layout once more, for callers that run one instance many times (lights):
+    // all packets are to be done again, lit words are cleared, output parameters hold their bound
+    // values. Variables and other parameters stay as they are.
+    void restart();
+
     [[nodiscard]] std::uint32_t count() const { return batch_.count; }
     [[nodiscard]] std::uint32_t stride() const { return batch_.stride; }
     [[nodiscard]] const ShaderInstance& instance() const { return *instance_; }
+
+    // All planes, for geo::World::fill; the auxiliary ones are null without area operators.
+    [[nodiscard]] const sl_points& points() const { return main_; }
+    [[nodiscard]] const sl_points* aux_points_u() const { return batch_.aux_u; }
+    [[nodiscard]] const sl_points* aux_points_v() const { return batch_.aux_v; }
 
     // True if the shader needs or writes the variable: then its planes exist.
     [[nodiscard]] bool has(sl_variable id) const { return main_.var[id] != nullptr; }
@@ -82,6 +92,7 @@ private:
     struct Layout;
     void point_to(const Layout& layout, std::byte* memory);
     void bind_params(const Layout& layout, std::byte* memory);
+    void spread(const sl_param& p, std::byte* planes);
     [[nodiscard]] float* plane_of(float* base, int component) const {
         return base ? base + static_cast<std::size_t>(component) * batch_.stride : nullptr;
     }

@@ -162,6 +162,27 @@ TEST_F(Batches, EverySizeShadesItsPointsAndOnlyThose) {
     }
 }
 
+TEST_F(Batches, RestartRunsTheSamePointsAgain) {
+    const TestObject source;
+    const ShaderObject* object = library.adopt(source.object);
+    const ShaderInstance instance(*object, {}, services, nullptr, table, diag);
+    ShadeBatch batch;
+    batch.begin(instance, 5);
+    batch.param_plane(1, 0)[0] = 7;
+    batch.plane(SL_VAR_Cs)[4] = 2;
+    EXPECT_EQ(batch.points().var[SL_VAR_Cs], batch.plane(SL_VAR_Cs));
+    EXPECT_EQ(batch.aux_points_u(), nullptr) << "no area operators";
+    EXPECT_EQ(batch.run({&services, nullptr}), 0U);
+    EXPECT_EQ(batch.param_plane(2, 0)[0], 8);
+    batch.restart();
+    EXPECT_FALSE(batch.lit(0));
+    EXPECT_EQ(batch.param_plane(2, 0)[0], 3) << "outputs start from their bound value";
+    EXPECT_EQ(batch.param_plane(1, 0)[0], 7) << "inputs stay";
+    EXPECT_EQ(batch.run({&services, nullptr}), 0U);
+    EXPECT_EQ(batch.param_plane(2, 0)[0], 8);
+    EXPECT_EQ(batch.plane(SL_VAR_Ci)[4], 4);
+}
+
 TEST_F(Batches, SuspendedPacketsAreCalledAgain) {
     TestObject source;
     source.variant.shade = suspend_once;

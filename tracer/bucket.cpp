@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracer/bucket.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace trace {
+
+namespace {
+
+constexpr std::uint32_t lanes = geo::RayPacket::size;
+// A ray that is still not stopped has met a surface it cannot leave, or a scene nobody would wait
+// for.
+constexpr std::uint32_t max_layers = 10'000;
+// Less than a thousandth of what lies behind is not worth a ray.
+constexpr float default_opaque = 0.999f;
+
+std::array<float, 3> threshold(const rib::Options& options, const char* name, float fallback) {
+    const auto it = options.user.find(name);
+    if (it == options.user.end() || it->second.floats.empty()) {
+        return {fallback, fallback, fallback};
+    }
+    const std::vector<float>& v = it->second.floats;
+    return v.size() >= 3 ? std::array<float, 3>{v[0], v[1], v[2]}
+                         : std::array<float, 3>{v[0], v[0], v[0]};
+}
+
+float ray_z(const geo::RayPacket& packet, std::size_t lane, float t) {
+    return packet.oz[lane] + t * packet.dz[lane];
+}
+
+} // namespace
+
+VisibilityOptions visibility_options(const rib::Options& options) {
+    return {threshold(options, "limits:othreshold", default_opaque),
+            threshold(options, "limits:zthreshold", 1)};
+}
+
+BucketRenderer::BucketRenderer(const FrameContext& frame, const Camera& camera,
+                               const Sampler& sampler, const ShadingClasses& classes,
+                               const VisibilityOptions& options)
+    : frame_(frame), camera_(camera), sampler_(sampler), classes_(classes), options_(options),
+      shader_(frame, camera, classes, thread_) {}
+
+void BucketRenderer::render(std::size_t bucket, Film& film) {
+    sampler_.fill(film.sample_pixels(bucket), block_);
+    SampleBuffer samples = film.buffer(bucket);
+    layer_ = 0;
+    behind_.clear();
+    trace_camera_rays();
+    composite_first(samples);
+    while (!behind_.empty()) {
+        if (++layer_ > max_layers) {
+            frame_.diag.report_once(
+                "layers", base::Severity::Warning, base::Code::Limit, {},
+                "more than " + std::to_string(max_layers) +
+                    " transparent surfaces lie behind each other; the rest is left out");
+            break;
+        }
+        trace_behind();
+        composite_behind(samples);
+    }
+    film.submit(bucket, std::move(samples));
+}
+
+void BucketRenderer::trace_camera_rays() {
+    const std::size_t num_packets = block_.num_packets();
+    camera_packets_.resize(num_packets);
+    hits_.resize(num_packets * lanes);
+    camera_.make_rays(block_, camera_packets_);
+    frame_.world->intersect(camera_packets_, hits_.data());
+    for (std::size_t p = 0; p < num_packets; ++p) {
+        for (std::uint32_t off = ~camera_packets_[p].active & 0xffU; off != 0; off &= off - 1) {
+            hits_[p * lanes + static_cast<std::size_t>(std::countr_zero(off))] = {};
+        }
+    }
+    thread_.counters.add(Counter::rays_camera, block_.count);
+}
+
+bool BucketRenderer::is_matte(const geo::Hit& hit) const {
+    return classes_.has_matte() && classes_.facts(frame_.world->binding(hit).attributes).is_matte;
+}
+
+bool BucketRenderer::composite(Sample& sample, float& z, std::array<float, 3>& transmitted,
+                               const geo::Hit& hit, const Shade& shade, float z_hit) const {
+    const float shown = is_matte(hit) ? 0.0f : 1.0f;
+    bool shows_behind = false, counts_for_depth = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+        sample.color[k] += shown * transmitted[k] * shade.color[k];
+        sample.opacity[k] += shown * transmitted[k] * shade.opacity[k];
+        transmitted[k] *= 1 - shade.opacity[k];
+        shows_behind |= 1 - transmitted[k] < options_.opaque_from[k];
+        counts_for_depth &= shade.opacity[k] >= options_.depth_from[k];
+    }
+    if (counts_for_depth) {
+        z = std::min(z, z_hit);
+    }
+    return shows_behind;
+}
+
+void BucketRenderer::composite_first(SampleBuffer& samples) {
+    shades_.resize(block_.count);
+    const std::span<const geo::Hit> hits(hits_.data(), block_.count);
+    shader_.shade({camera_packets_, {}, block_.seed, 0}, hits, shades_);
+    for (std::uint32_t i = 0; i < hits.size(); ++i) {
+        if (!hits[i].valid()) {
+            continue;
+        }
+        std::array<float, 3> transmitted = {1, 1, 1};
+        const float z = ray_z(camera_packets_[i / lanes], i % lanes, hits[i].t);
+        if (composite(samples.samples[i], samples.z[i], transmitted, hits[i], shades_[i], z)) {
+            behind_.push_back({i, hits[i].t, hits[i], transmitted});
+        }
+    }
+}
+
+void BucketRenderer::composite_behind(SampleBuffer& samples) {
+    shades_.resize(std::max(shades_.size(), behind_.size()));
+    behind_rays_.clear();
+    for (const Behind& b : behind_) {
+        behind_rays_.push_back(b.ray);
+    }
+    const std::span<const geo::Hit> hits(hits_.data(), behind_.size());
+    shader_.shade({camera_packets_, behind_rays_, block_.seed, layer_}, hits, shades_);
+    next_.clear();
+    for (std::size_t i = 0; i < behind_.size(); ++i) {
+        Behind b = behind_[i];
+        if (!hits[i].valid()) {
+            continue;
+        }
+        b.t += hits[i].t;
+        b.hit = hits[i];
+        const float z = ray_z(packets_[i / lanes], i % lanes, hits[i].t);
+        if (composite(samples.samples[b.ray], samples.z[b.ray], b.transmitted, b.hit, shades_[i],
+                      z)) {
+            next_.push_back(b);
+        }
+    }
+    behind_.swap(next_);
+}
+
+// Rays restart outside the error of the surface they left, in the same direction.
+void BucketRenderer::trace_behind() {
+    const std::size_t num_packets = (behind_.size() + lanes - 1) / lanes;
+    packets_.assign(num_packets, {});
+    hits_.resize(std::max(hits_.size(), num_packets * lanes));
+    for (std::size_t i = 0; i < behind_.size(); ++i) {
+        const Behind& b = behind_[i];
+        const geo::RayPacket& from = camera_packets_[b.ray / lanes];
+        const std::size_t source = b.ray % lanes, lane = i % lanes;
+        geo::RayPacket& to = packets_[i / lanes];
+        const base::V3f direction(from.dx[source], from.dy[source], from.dz[source]);
+        const base::V3f origin = frame_.world->spawn_origin(b.hit, direction);
+        to.ox[lane] = origin.x, to.oy[lane] = origin.y, to.oz[lane] = origin.z;
+        to.dx[lane] = direction.x, to.dy[lane] = direction.y, to.dz[lane] = direction.z;
+        to.tnear[lane] = 0;
+        to.tfar[lane] = from.tfar[source] - b.t;
+        to.time[lane] = from.time[source];
+        to.mask[lane] = from.mask[source];
+        to.active |= 1U << lane;
+    }
+    frame_.world->intersect(packets_, hits_.data());
+    thread_.counters.add(Counter::rays_behind, behind_.size());
+}
+
+} // namespace trace

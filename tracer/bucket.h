@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// The visibility loop of one bucket: camera rays, hits, shades, composited samples (ri.md 9.1). One
+// per thread. Rays go on behind what is not opaque; all rays of a bucket that reached the same
+// layer are traced and shaded together.
+#pragma once
+
+#include "tracer/camera.h"
+#include "tracer/film.h"
+#include "tracer/hit_shader.h"
+#include "tracer/sampler.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace trace {
+
+struct VisibilityOptions {
+    std::array<float, 3>
+        opaque_from; // Option "limits" "othreshold": nothing behind matters from there on
+    std::array<float, 3> depth_from; // "zthreshold": opacity that counts for depth
+};
+[[nodiscard]] VisibilityOptions visibility_options(const rib::Options& options);
+
+class BucketRenderer {
+public:
+    BucketRenderer(const FrameContext& frame, const Camera& camera, const Sampler& sampler,
+                   const ShadingClasses& classes, const VisibilityOptions& options);
+
+    // Renders a bucket and hands its samples to the film.
+    void render(std::size_t bucket, Film& film);
+
+    [[nodiscard]] ThreadState& thread() { return thread_; }
+
+private:
+    // A ray that goes on behind what it met.
+    struct Behind {
+        std::uint32_t ray; // sample of the block
+        float t;           // so far, from the camera ray's origin
+        geo::Hit hit;      // where it left off
+        std::array<float, 3> transmitted;
+    };
+    void trace_camera_rays();
+    void trace_behind();
+    void composite_first(SampleBuffer& samples);
+    void composite_behind(SampleBuffer& samples);
+    // Adds a shade to a sample; true if something behind it still shows.
+    bool composite(Sample& sample, float& z, std::array<float, 3>& transmitted, const geo::Hit& hit,
+                   const Shade& shade, float z_hit) const;
+    [[nodiscard]] bool is_matte(const geo::Hit& hit) const;
+
+    const FrameContext& frame_;
+    const Camera& camera_;
+    const Sampler& sampler_;
+    const ShadingClasses& classes_;
+    VisibilityOptions options_;
+    ThreadState thread_;
+    HitShader shader_;
+
+    SampleBlock block_;
+    std::vector<geo::RayPacket> camera_packets_; // as shaders see the rays
+    std::vector<geo::RayPacket> packets_;        // restarted rays of the layer in work
+    std::vector<geo::Hit> hits_;
+    std::vector<Shade> shades_;
+    std::vector<Behind> behind_, next_;
+    std::vector<std::uint32_t> behind_rays_;
+    std::uint32_t layer_ = 0;
+};
+
+} // namespace trace

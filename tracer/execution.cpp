@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracer/execution.h"
+
+#include "tracer/lights.h"
+#include "tracer/shader_set.h"
+
+namespace trace {
+
+ThreadState::ThreadState() = default;
+ThreadState::~ThreadState() = default;
+
+std::uint32_t Execution::lanes() const {
+    return static_cast<std::uint32_t>(running.instance->shader().variant().lanes);
+}
+
+void report_suspended(const Execution& execution) {
+    report_shader(
+        execution, base::Severity::Warning, 0,
+        "uses rays or textures, which are not available yet; what follows them is not computed");
+}
+
+void report_shader(const Execution& execution, base::Severity severity, int line,
+                   std::string_view text) {
+    const ShaderEntry& shader = execution.running;
+    // While parameters are bound there is no instance yet: the call's place has to do.
+    base::SourcePos pos = shader.pos;
+    if (shader.instance && line > 0) {
+        pos = {execution.frame.diag.file_id(shader.object().source),
+               static_cast<std::uint32_t>(line), 0};
+    }
+    const std::string message = "shader \"" + shader.name + "\": " + std::string(text);
+    execution.frame.diag.report_once(message, severity, base::Code::None, pos, message);
+}
+
+} // namespace trace

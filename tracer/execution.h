@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a running shader stands in: the frame, the thread's scratch, the points being shaded. A
+// pointer to an Execution is the `engine` every service of runtime/abi/sl_services.def gets.
+// Executions live on the stack of the function that runs a batch; lights get one of their own that
+// refers to the one that asked.
+#pragma once
+
+#include "geometry/world.h"
+#include "ribtools/scene.h"
+#include "runtime/batch.h"
+#include "runtime/shader.h"
+#include "tracer/spaces.h"
+#include "tracer/stats.h"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace trace {
+
+struct ShaderEntry;
+class ShaderSet;
+class LightSet;
+class LightRun;
+struct LightList;
+
+// Immutable for the frame, shared by all threads. world, shaders and lights are null while shaders
+// are bound.
+struct FrameContext {
+    const rib::Scene& scene;
+    const Spaces& spaces;
+    rt::StringTable& strings;
+    base::Diag& diag;
+    const geo::World* world = nullptr;
+    const ShaderSet* shaders = nullptr;
+    const LightSet* lights = nullptr;
+};
+
+// Matrices found for the running batch, by the addresses of the names: emitted code asks once per
+// packet.
+struct SpaceCache {
+    struct Item {
+        sl_string from = nullptr, to = nullptr;
+        bool known = false;
+        std::array<float, 16> m{};
+    };
+    static constexpr std::size_t capacity = 16;
+    std::array<Item, capacity> items;
+    std::size_t size = 0;
+};
+
+// Scratch of one thread. Batches are nested by role, so that a volume sees the surface it follows.
+struct ThreadState {
+    ThreadState();
+    ~ThreadState();
+
+    Counters counters;
+    rt::ShadeBatch surface;
+    rt::ShadeBatch volume;
+    std::vector<std::unique_ptr<LightRun>> lights; // by light, made on first use
+    std::uint64_t batch_serial = 0; // grows with every batch: stale light results are told by it
+    std::string printed;            // printf of the bucket in work
+};
+
+// Points of one batch that came from rays. All belong to attribute states that shade alike; where a
+// shader's facts ask for it also to one object space or one attribute state.
+struct BatchSubject {
+    std::span<const geo::Hit> hits;
+    const LightList* lights = nullptr;
+    std::uint32_t attributes = geo::no_id; // of the first point
+};
+
+class Execution {
+public:
+    Execution(const FrameContext& frame_, const ShaderEntry& running_)
+        : frame(frame_), running(running_) {}
+    Execution(const Execution&) = delete;
+    Execution& operator=(const Execution&) = delete;
+
+    const FrameContext& frame;
+    const ShaderEntry& running;
+    ThreadState* thread = nullptr; // null while parameters are bound
+    rt::ShadeBatch* batch = nullptr;
+    const BatchSubject* subject = nullptr;
+    const Execution* asked_by = nullptr; // a light's: the execution that lights its points,
+    std::uint32_t asked_first = 0;       // and the index there of its first point
+    const Execution* surface = nullptr;  // a volume's: the surface at its far end
+    LightRun* current_light = nullptr;   // lightsource()
+    int ray_level = 0;
+    int ray_kind = SL_RAY_camera;
+    SpaceCache spaces;
+
+    // Points per packet of the running variant: the plane length of everything the services
+    // exchange.
+    [[nodiscard]] std::uint32_t lanes() const;
+};
+
+// The shader waits for something the engine does not answer yet (rays, textures): reported once;
+// its points keep the values they have.
+void report_suspended(const Execution& execution);
+
+// A message about the running shader, once per shader and text.
+void report_shader(const Execution& execution, base::Severity severity, int line,
+                   std::string_view text);
+
+} // namespace trace

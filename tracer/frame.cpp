@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracer/frame.h"
+
+#include "geometry/world.h"
+#include "runtime/base/parallel.h"
+#include "tracer/bucket.h"
+#include "tracer/camera.h"
+#include "tracer/display.h"
+#include "tracer/filter.h"
+#include "tracer/imager.h"
+#include "tracer/lights.h"
+#include "tracer/quantize.h"
+#include "tracer/sampler.h"
+#include "tracer/shader_set.h"
+#include "tracer/shading_classes.h"
+
+#include <cstdio>
+#include <memory>
+#include <new>
+#include <vector>
+
+namespace trace {
+
+namespace {
+
+bool wants_stop(const RenderSettings& settings, const base::Diag& diag) {
+    return (settings.interrupted != nullptr && settings.interrupted()) || diag.abort_requested();
+}
+
+// Text of printf leaves in the order of the buckets, whichever finished first.
+class OrderedPrinter {
+public:
+    explicit OrderedPrinter(std::size_t num_items) : texts_(num_items), done_(num_items) {}
+
+    void finish(std::size_t item, std::string&& text) {
+        const std::lock_guard lock(mutex_);
+        texts_[item] = std::move(text);
+        done_[item] = true;
+        for (; next_ < texts_.size() && done_[next_]; ++next_) {
+            std::fwrite(texts_[next_].data(), 1, texts_[next_].size(), stdout);
+            texts_[next_] = {};
+        }
+    }
+
+private:
+    std::mutex mutex_;
+    std::vector<std::string> texts_;
+    std::vector<bool> done_;
+    std::size_t next_ = 0;
+};
+
+// All that is made from a scene before the first ray, in the order it is made.
+class Frame {
+public:
+    Frame(const rib::Scene& scene, const RenderSettings& settings, const FrameTools& tools)
+        : scene_(scene), settings_(settings), tools_(tools), camera_(scene, tools.diag),
+          spaces_(scene, {camera_.screen_from_camera(), camera_.ndc_from_screen(),
+                          camera_.raster_from_screen()}) {
+        {
+            const PhaseTimer timer(tools.stats, Phase::shaders);
+            shaders_ = std::make_unique<ShaderSet>(
+                ShaderSources{scene, spaces_, tools.library, tools.strings, tools.diag});
+            lights_ = std::make_unique<LightSet>(scene, *shaders_, tools.diag);
+            classes_ = std::make_unique<ShadingClasses>(scene, *shaders_, *lights_);
+        }
+        const PhaseTimer timer(tools.stats, Phase::geometry);
+        world_ = geo::World::build(
+            scene, {camera_.view(), scene.options.shutter_open, settings.num_threads}, tools.diag);
+        tools.stats.world = world_->stats();
+    }
+
+    [[nodiscard]] const Camera& camera() const { return camera_; }
+    [[nodiscard]] FrameContext context() const {
+        return {scene_,       spaces_,        tools_.strings, tools_.diag,
+                world_.get(), shaders_.get(), lights_.get()};
+    }
+    [[nodiscard]] const ShaderEntry* imager() const { return shaders_->get(scene_.options.imager); }
+
+    FrameResult render(Image& image) const;
+
+private:
+    FrameResult render_buckets(Film& film, const Sampler& sampler) const;
+
+    const rib::Scene& scene_;
+    const RenderSettings& settings_;
+    const FrameTools& tools_;
+    Camera camera_;
+    Spaces spaces_;
+    std::unique_ptr<ShaderSet> shaders_;
+    std::unique_ptr<LightSet> lights_;
+    std::unique_ptr<ShadingClasses> classes_;
+    std::unique_ptr<geo::World> world_;
+};
+
+FrameResult Frame::render(Image& image) const {
+    const PhaseTimer timer(tools_.stats, Phase::render);
+    const rib::Options& options = scene_.options;
+    const Sampler sampler(sampler_settings(options, tools_.diag));
+    const Filter filter(options.filter, options.filter_width[0], options.filter_width[1],
+                        tools_.diag);
+    const FilterWeights weights(filter, sampler);
+    const std::unique_ptr<Film> film = Film::create(
+        camera_.raster(), sampler, weights, film_settings(options, tools_.diag), tools_.diag);
+    if (!film) {
+        return FrameResult::Failed;
+    }
+    const FrameResult result = render_buckets(*film, sampler);
+    image = std::move(film->image());
+    return result;
+}
+
+FrameResult Frame::render_buckets(Film& film, const Sampler& sampler) const {
+    const FrameContext frame = context();
+    const VisibilityOptions visibility = visibility_options(scene_.options);
+    std::vector<std::unique_ptr<BucketRenderer>> renderers(
+        static_cast<std::size_t>(base::thread_count(settings_.num_threads)));
+    OrderedPrinter printer(film.num_buckets());
+    Progress progress(settings_.progress, stderr);
+    progress.start("render", film.num_buckets());
+    base::parallel_for(
+        film.num_buckets(), settings_.num_threads, [&](std::size_t bucket, int slot) {
+            if (wants_stop(settings_, tools_.diag)) {
+                return false;
+            }
+            std::unique_ptr<BucketRenderer>& renderer = renderers[static_cast<std::size_t>(slot)];
+            if (!renderer) {
+                renderer = std::make_unique<BucketRenderer>(frame, camera_, sampler, *classes_,
+                                                            visibility);
+            }
+            renderer->render(bucket, film);
+            printer.finish(bucket, std::move(renderer->thread().printed));
+            renderer->thread().printed.clear();
+            progress.advance();
+            return true;
+        });
+    progress.finish();
+    for (const auto& renderer : renderers) {
+        if (renderer) {
+            tools_.stats.counters += renderer->thread().counters;
+        }
+    }
+    return film.complete() ? FrameResult::Done : FrameResult::Interrupted;
+}
+
+// The displays of the frame; a scene that names none gets the default one.
+std::vector<rib::Display> displays_of(const rib::Options& options, const RenderSettings& settings) {
+    std::vector<rib::Display> displays = options.displays;
+    if (displays.empty() && !settings.default_output.empty()) {
+        displays.push_back(default_display(settings.default_output, "rgba"));
+    }
+    return displays;
+}
+
+// Displays that ask for the same exposure share one exposed picture. The last one may take the
+// film's.
+class Developer {
+public:
+    Developer(const Frame& frame, const RenderSettings& settings, const FrameTools& tools,
+              Image&& filtered)
+        : frame_(frame), settings_(settings), tools_(tools), filtered_(std::move(filtered)) {}
+
+    const Image& developed(const Exposure& exposure, bool last) {
+        if (!is_developed_ || !(exposure == exposure_)) {
+            picture_ = last ? std::move(filtered_) : filtered_;
+            apply_exposure(picture_, exposure);
+            if (const ShaderEntry* imager = frame_.imager()) {
+                run_imager(frame_.context(), *imager, picture_, settings_.num_threads,
+                           tools_.stats.counters);
+            }
+            exposure_ = exposure;
+            is_developed_ = true;
+        }
+        return picture_;
+    }
+
+private:
+    const Frame& frame_;
+    const RenderSettings& settings_;
+    const FrameTools& tools_;
+    Image filtered_, picture_;
+    Exposure exposure_;
+    bool is_developed_ = false;
+};
+
+FrameResult write_displays(const rib::Scene& scene, const Frame& frame,
+                           const RenderSettings& settings, const FrameTools& tools, Image&& image) {
+    const PhaseTimer timer(tools.stats, Phase::write);
+    const std::vector<rib::Display> displays = displays_of(scene.options, settings);
+    Developer developer(frame, settings, tools, std::move(image));
+    FrameResult result = FrameResult::Done;
+    for (const rib::Display& display : displays) {
+        if (wants_stop(settings, tools.diag)) {
+            return FrameResult::Interrupted;
+        }
+        const Exposure exposure = exposure_of(scene.options, display);
+        const Image& picture = developer.developed(exposure, &display == &displays.back());
+        const DisplayResult written = write_display(
+            display, scene.options, picture, picture_info(frame.camera(), exposure), tools.diag);
+        result = written == DisplayResult::Failed ? FrameResult::Failed : result;
+    }
+    return result;
+}
+
+} // namespace
+
+FrameResult render_image(const rib::Scene& scene, const RenderSettings& settings,
+                         const FrameTools& tools, Image& image) {
+    const Frame frame(scene, settings, tools);
+    return frame.render(image);
+}
+
+FrameResult render_frame(const rib::Scene& scene, const RenderSettings& settings,
+                         const FrameTools& tools) {
+    const Frame frame(scene, settings, tools);
+    if (wants_stop(settings, tools.diag)) {
+        return FrameResult::Interrupted;
+    }
+    Image image;
+    const FrameResult rendered = frame.render(image);
+    if (rendered != FrameResult::Done) {
+        return rendered;
+    }
+    return write_displays(scene, frame, settings, tools, std::move(image));
+}
+
+} // namespace trace

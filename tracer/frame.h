@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// One frame from its scene to its files: shaders are loaded and bound, the world is built, buckets
+// are rendered in parallel, the picture is exposed, run through the imager and written. The same
+// bytes whatever the thread count.
+#pragma once
+
+#include "ribtools/scene.h"
+#include "runtime/base/diag.h"
+#include "runtime/shader.h"
+#include "tracer/film.h"
+#include "tracer/progress.h"
+#include "tracer/stats.h"
+
+#include <string>
+
+namespace trace {
+
+struct RenderSettings {
+    int num_threads = 0; // 0: all
+    ProgressMode progress = ProgressMode::None;
+    // True once the user wants to stop; asked between buckets. May be null.
+    bool (*interrupted)() = nullptr;
+    // The file of a scene without Display; "" = nothing is written.
+    std::string default_output;
+};
+
+enum class FrameResult { Done, Interrupted, Failed /* the environment: exit code 3 */ };
+
+// Everything a frame is made with; all outlive the call.
+struct FrameTools {
+    rt::ShaderLibrary& library;
+    rt::StringTable& strings;
+    base::Diag& diag;
+    Stats& stats;
+};
+
+// The filtered picture, before exposure and imager; for tests and other users of the picture.
+// Interrupted: the buckets that were finished.
+FrameResult render_image(const rib::Scene& scene, const RenderSettings& settings,
+                         const FrameTools& tools, Image& image);
+
+// The same, then exposed, imaged and written to every display. Nothing appears under a final name
+// unless complete.
+FrameResult render_frame(const rib::Scene& scene, const RenderSettings& settings,
+                         const FrameTools& tools);
+
+} // namespace trace

@@ -1,0 +1,350 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracer/hit_shader.h"
+
+#include "tracer/services.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace trace {
+
+namespace {
+
+constexpr std::uint64_t bit(sl_variable id) {
+    return 1ULL << id;
+}
+
+// Variables that come from the geometry; the rest of a shader's needs is filled here.
+constexpr std::uint64_t geometry_variables =
+    bit(SL_VAR_P) | bit(SL_VAR_N) | bit(SL_VAR_Ng) | bit(SL_VAR_I) | bit(SL_VAR_E) |
+    bit(SL_VAR_dPdu) | bit(SL_VAR_dPdv) | bit(SL_VAR_u) | bit(SL_VAR_v) | bit(SL_VAR_du) |
+    bit(SL_VAR_dv) | bit(SL_VAR_s) | bit(SL_VAR_t) | bit(SL_VAR_Cs) | bit(SL_VAR_Os) |
+    bit(SL_VAR_time) | bit(SL_VAR_dPdtime);
+
+bool is_number(float x) {
+    return x - x == 0;
+}
+
+std::uint32_t mix(std::uint32_t x) { // [Mueller] lowbias32: neighbouring inputs give unlike outputs
+    x ^= x >> 16;
+    x *= 0x7feb352dU;
+    x ^= x >> 15;
+    x *= 0x846ca68bU;
+    return x ^ x >> 16;
+}
+
+} // namespace
+
+std::size_t HitShader::KeyHash::operator()(const Key& key) const {
+    return mix(key.shading_class ^ mix(key.a ^ mix(key.b)));
+}
+
+HitShader::HitShader(const FrameContext& frame, const Camera& camera, const ShadingClasses& classes,
+                     ThreadState& thread)
+    : frame_(frame), camera_(camera), classes_(classes), thread_(thread),
+      group_of_class_(classes.size(), geo::no_id) {}
+
+// --- grouping
+// ---------------------------------------------------------------------------------------------------
+
+std::uint32_t HitShader::new_group(std::uint32_t shading_class, std::uint32_t attributes) {
+    groups_.push_back({shading_class, attributes});
+    return static_cast<std::uint32_t>(groups_.size() - 1);
+}
+
+std::uint32_t HitShader::keyed_group(const geo::Hit& hit, const geo::Binding& binding,
+                                     std::uint32_t shading_class) {
+    const ShadingClass& c = classes_[shading_class];
+    Key key{shading_class, 0, geo::no_id};
+    if (!c.overrides.empty()) { // primitive variables are read shape by shape
+        key.a = hit.shape;
+        key.b = hit.instance;
+    } else {
+        key.a = binding.transform_key;
+    }
+    const auto [it, is_new] = group_of_key_.emplace(key, 0);
+    if (is_new) {
+        it->second = new_group(shading_class, binding.attributes);
+    }
+    return it->second;
+}
+
+std::uint32_t HitShader::group_of(const geo::Hit& hit) {
+    const geo::Binding binding = frame_.world->binding(hit);
+    const std::uint32_t shading_class = classes_.facts(binding.attributes).shading_class;
+    if (classes_[shading_class].needs_key()) {
+        return keyed_group(hit, binding, shading_class);
+    }
+    std::uint32_t& group = group_of_class_[shading_class];
+    if (group == geo::no_id) {
+        group = new_group(shading_class, binding.attributes);
+    }
+    return group;
+}
+
+// Counting sort: members of a group keep the order of the rays.
+void HitShader::group_hits(std::span<const geo::Hit> hits) {
+    for (const Group& group : groups_) {
+        group_of_class_[group.shading_class] = geo::no_id;
+    }
+    groups_.clear();
+    group_of_key_.clear();
+    group_of_hit_.resize(hits.size());
+    const geo::Hit* last = nullptr;
+    std::uint32_t group = geo::no_id;
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+        if (!hits[i].valid()) {
+            group_of_hit_[i] = geo::no_id;
+            continue;
+        }
+        // Neighbouring rays mostly meet the same shape, whose parts bind alike.
+        if (last == nullptr || last->shape != hits[i].shape || last->instance != hits[i].instance) {
+            group = group_of(hits[i]);
+            last = &hits[i];
+        }
+        group_of_hit_[i] = group;
+        ++groups_[group].count;
+    }
+    std::uint32_t begin = 0;
+    for (Group& g : groups_) {
+        g.begin = begin;
+        begin += g.count;
+        g.count = 0;
+    }
+    members_.resize(begin);
+    for (std::uint32_t i = 0; i < hits.size(); ++i) {
+        if (group_of_hit_[i] != geo::no_id) {
+            Group& g = groups_[group_of_hit_[i]];
+            members_[g.begin + g.count++] = i;
+        }
+    }
+}
+
+void HitShader::shade(const ShadingRays& rays, std::span<const geo::Hit> hits,
+                      std::span<Shade> out) {
+    rays_ = rays;
+    hits_ = hits;
+    out_ = out;
+    group_hits(hits);
+    thread_.counters.add(Counter::hits, members_.size());
+    for (const Group& group : groups_) {
+        shade_group(group);
+    }
+}
+
+void HitShader::shade_group(const Group& group) {
+    const ShadingClass& c = classes_[group.shading_class];
+    const std::span<std::uint32_t> members(members_.data() + group.begin, group.count);
+    for (std::size_t begin = 0; begin < members.size();) {
+        const std::size_t end =
+            c.overrides.empty() ? members.size() : equal_values(c, members, begin);
+        for (; begin < end; begin += std::min<std::size_t>(SL_BATCH_MAX, end - begin)) {
+            shade_batch(group,
+                        members.subspan(begin, std::min<std::size_t>(SL_BATCH_MAX, end - begin)));
+        }
+    }
+}
+
+// --- one batch
+// --------------------------------------------------------------------------------------------------
+
+void HitShader::shade_batch(const Group& group, std::span<const std::uint32_t> members) {
+    const ShadingClass& c = classes_[group.shading_class];
+    gather(c, members);
+    ++thread_.batch_serial;
+    const BatchSubject subject{{batch_.hits.data(), members.size()}, &c.lights, group.attributes};
+    Execution surface(frame_, *c.surface);
+    surface.thread = &thread_;
+    surface.batch = &thread_.surface;
+    surface.subject = &subject;
+    run_surface(c, surface, members);
+    if (c.atmosphere != nullptr) {
+        run_atmosphere(*c.atmosphere, surface, members);
+    }
+    scatter(members, *c.surface);
+}
+
+void HitShader::gather(const ShadingClass& c, std::span<const std::uint32_t> members) {
+    const std::uint64_t needed =
+        c.surface->object().needed | (c.atmosphere != nullptr ? c.atmosphere->object().needed : 0);
+    const bool needs_footprint = (needed & (bit(SL_VAR_du) | bit(SL_VAR_dv))) != 0 ||
+                                 (c.surface->object().facts & SL_FACT_area_operators) != 0;
+    for (std::size_t i = 0; i < members.size(); ++i) {
+        const geo::Hit& hit = batch_.hits[i] = hits_[members[i]];
+        const std::uint32_t ray = ray_of(members[i]);
+        const geo::RayPacket& packet = rays_.packets[ray / geo::RayPacket::size];
+        const std::size_t lane = ray % geo::RayPacket::size;
+        batch_.ox[i] = packet.ox[lane], batch_.oy[i] = packet.oy[lane],
+        batch_.oz[i] = packet.oz[lane];
+        batch_.dx[i] = packet.dx[lane], batch_.dy[i] = packet.dy[lane],
+        batch_.dz[i] = packet.dz[lane];
+        batch_.footprint[i] = 0;
+        if (needs_footprint) {
+            const float spacing_px =
+                classes_.facts(frame_.world->binding(hit).attributes).spacing_px;
+            batch_.footprint[i] =
+                camera_.footprint(packet.oz[lane] + hit.t * packet.dz[lane], spacing_px);
+        }
+    }
+}
+
+// Ci and Oi start as Cs and Os ([R] of sl.md 5.2), so the geometry is asked for those whatever the
+// shader needs; where it has no planes for them they go straight to the results.
+void HitShader::run_surface(const ShadingClass& c, Execution& execution,
+                            std::span<const std::uint32_t> members) {
+    const auto count = static_cast<std::uint32_t>(members.size());
+    rt::ShadeBatch& batch = thread_.surface;
+    batch.begin(*c.surface->instance, count);
+    const std::uint32_t stride = batch.stride();
+    sl_points planes = batch.points();
+    const auto or_scratch = [](float*& plane, std::array<float, 3 * Batch::size>& scratch) {
+        plane = plane != nullptr ? plane : scratch.data();
+    };
+    or_scratch(planes.var[SL_VAR_Ci], batch_.Ci);
+    or_scratch(planes.var[SL_VAR_Oi], batch_.Oi);
+    float* const Ci = planes.var[SL_VAR_Ci];
+    float* const Oi = planes.var[SL_VAR_Oi];
+    const bool own_Cs = planes.var[SL_VAR_Cs] != nullptr, own_Os = planes.var[SL_VAR_Os] != nullptr;
+    planes.var[SL_VAR_Cs] = own_Cs ? planes.var[SL_VAR_Cs] : Ci;
+    planes.var[SL_VAR_Os] = own_Os ? planes.var[SL_VAR_Os] : Oi;
+    const std::uint64_t needed = c.surface->object().needed | bit(SL_VAR_Cs) | bit(SL_VAR_Os);
+    frame_.world->fill({batch_.hits.data(), count}, incident(count), needed & geometry_variables,
+                       stride, planes, batch.aux_points_u(), batch.aux_points_v());
+    if (own_Cs) {
+        std::copy_n(planes.var[SL_VAR_Cs], 3 * stride, Ci);
+    }
+    if (own_Os) {
+        std::copy_n(planes.var[SL_VAR_Os], 3 * stride, Oi);
+    }
+    fill_own_variables(batch, count);
+    fill_seeds(batch, members);
+    if (!c.overrides.empty()) {
+        bind_overrides(c, batch);
+    }
+    run(batch, execution);
+    thread_.counters.add(Counter::points_surface, count);
+    stride_ = stride;
+    take_results(Ci, Oi);
+}
+
+// The volume between the eye and the surface; it takes Ci and Oi of the surface and gives those at
+// the eye.
+void HitShader::run_atmosphere(const ShaderEntry& shader, const Execution& surface,
+                               std::span<const std::uint32_t> members) {
+    const auto count = static_cast<std::uint32_t>(members.size());
+    rt::ShadeBatch& batch = thread_.volume;
+    batch.begin(*shader.instance, count);
+    Execution execution(frame_, shader);
+    execution.thread = &thread_;
+    execution.batch = &batch;
+    execution.subject = surface.subject;
+    execution.surface = &surface;
+    frame_.world->fill({batch_.hits.data(), count}, incident(count),
+                       shader.object().needed & geometry_variables, batch.stride(), batch.points(),
+                       nullptr, nullptr);
+    fill_own_variables(batch, count);
+    fill_seeds(batch, members);
+    const sl_points& planes = batch.points();
+    const auto copy = [&](float* to, const float* from) {
+        if (to != nullptr && from != nullptr && to != from) {
+            std::copy_n(from, 3 * stride_, to);
+        }
+    };
+    copy(planes.var[SL_VAR_Ci], batch_.Ci.data());
+    copy(planes.var[SL_VAR_Oi], batch_.Oi.data());
+    ++thread_.batch_serial; // its lights are asked by another shader
+    run(batch, execution);
+    thread_.counters.add(Counter::points_volume, count);
+    copy(batch_.Ci.data(), planes.var[SL_VAR_Ci]);
+    copy(batch_.Oi.data(), planes.var[SL_VAR_Oi]);
+}
+
+geo::Incident HitShader::incident(std::uint32_t count) const {
+    const auto all = [count](const std::array<float, Batch::size>& values) {
+        return std::span<const float>(values.data(), count);
+    };
+    return {all(batch_.ox), all(batch_.oy), all(batch_.oz),       all(batch_.dx),
+            all(batch_.dy), all(batch_.dz), all(batch_.footprint)};
+}
+
+void HitShader::fill_own_variables(rt::ShadeBatch& batch, std::uint32_t count) const {
+    if (float* ncomps = batch.uniform(SL_VAR_ncomps)) {
+        *ncomps = 3;
+    }
+    if (float* dtime = batch.plane(SL_VAR_dtime)) {
+        const rib::Options& options = frame_.scene.options;
+        std::fill_n(dtime, count, options.shutter_close - options.shutter_open);
+    }
+    const bool is_volume = batch.instance().object().type == SL_SHADER_volume;
+    for (const sl_variable id : {SL_VAR_du, SL_VAR_dv}) {
+        if (is_volume &&
+            batch.has(id)) { // constants, so that area functions give 0 ([R] of sl.md 3.4)
+            std::fill_n(batch.plane(id), count, 1.0f);
+        }
+    }
+}
+
+// random() must not depend on the batch, but differ from layer to layer of one ray.
+void HitShader::fill_seeds(rt::ShadeBatch& batch, std::span<const std::uint32_t> members) const {
+    if ((batch.instance().object().facts & (SL_FACT_random | SL_FACT_lights)) == 0) {
+        return;
+    }
+    for (std::size_t i = 0; i < members.size(); ++i) {
+        batch.seeds()[i] = mix(rays_.seed[ray_of(members[i])] + rays_.layer);
+    }
+}
+
+void HitShader::run(rt::ShadeBatch& batch, Execution& execution) {
+    if (batch.run({&service_table(), &execution}) != 0) {
+        report_suspended(execution);
+    }
+    Counters& counters = thread_.counters;
+    counters.add(Counter::batches);
+    counters.add(Counter::packets, batch.num_packets());
+    counters.add(Counter::lanes_offered, batch.num_packets() * execution.lanes());
+    counters.add(Counter::lanes_live, batch.count());
+}
+
+// --- results
+// ----------------------------------------------------------------------------------------------------
+
+void HitShader::take_results(const float* Ci, const float* Oi) {
+    if (Ci != batch_.Ci.data()) {
+        std::copy_n(Ci, 3 * stride_, batch_.Ci.data());
+    }
+    if (Oi != batch_.Oi.data()) {
+        std::copy_n(Oi, 3 * stride_, batch_.Oi.data());
+    }
+}
+
+// Opacity is clamped here, where it is composited, and colour is not (sl.md 5.2). What is no number
+// becomes a transparent black point.
+void HitShader::scatter(std::span<const std::uint32_t> members, const ShaderEntry& shader) {
+    const float* Ci = batch_.Ci.data();
+    const float* Oi = batch_.Oi.data();
+    std::uint64_t num_bad = 0;
+    for (std::size_t i = 0; i < members.size(); ++i) {
+        Shade& out = out_[members[i]];
+        bool good = true;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const float c = Ci[k * stride_ + i], o = Oi[k * stride_ + i];
+            good &= is_number(c) && is_number(o);
+            out.color[k] = c;
+            out.opacity[k] = std::clamp(o, 0.0f, 1.0f);
+        }
+        if (!good) {
+            out = {};
+            ++num_bad;
+        }
+    }
+    if (num_bad > 0) {
+        thread_.counters.add(Counter::bad_values, num_bad);
+        const Execution execution(frame_, shader);
+        report_shader(
+            execution, base::Severity::Warning, 0,
+            "Ci or Oi is not a number at some points; they are left black and transparent");
+    }
+}
+
+} // namespace trace

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shades the hits of rays: hits in, colour and opacity out, in the order of the hits. Hits are
+// grouped by shading class, groups are cut into batches, batches run surface and atmosphere shaders
+// (sl.md 5.1). One per thread; holds all scratch, so that nothing is allocated per ray. What a
+// point gets does not depend on the batch it falls into.
+#pragma once
+
+#include "geometry/world.h"
+#include "tracer/camera.h"
+#include "tracer/execution.h"
+#include "tracer/shading_classes.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+namespace trace {
+
+// One ray per hit, in the same order.
+struct ShadingRays {
+    // Ray of hit i is lane ray[i] % 8 of packet ray[i] / 8; an empty span means ray i. These are
+    // the rays as the shaders see them (I, E): those of the camera even where tracing restarted
+    // behind a surface.
+    std::span<const geo::RayPacket> packets;
+    std::span<const std::uint32_t> ray;
+    std::span<const std::uint32_t> seed; // by ray
+    std::uint32_t layer = 0;             // surfaces met before on these rays
+};
+
+struct Shade {
+    float color[3];
+    float opacity[3]; // clamped to 0..1
+};
+
+class HitShader {
+public:
+    HitShader(const FrameContext& frame, const Camera& camera, const ShadingClasses& classes,
+              ThreadState& thread);
+
+    // out[i] is set where hits[i] is valid.
+    void shade(const ShadingRays& rays, std::span<const geo::Hit> hits, std::span<Shade> out);
+
+private:
+    // Hits that may share a batch.
+    struct Group {
+        std::uint32_t shading_class;
+        std::uint32_t attributes; // of the first hit
+        std::uint32_t begin = 0, count = 0;
+    };
+    struct Key {
+        std::uint32_t shading_class, a, b;
+        friend bool operator==(const Key&, const Key&) = default;
+    };
+    struct KeyHash {
+        std::size_t operator()(const Key& key) const;
+    };
+    // Gathered inputs and results of the batch in work.
+    struct Batch {
+        static constexpr std::size_t size = SL_BATCH_MAX;
+        std::array<geo::Hit, size> hits;
+        alignas(64) std::array<float, size> ox, oy, oz, dx, dy, dz, footprint;
+        alignas(64) std::array<float, 3 * size> Ci, Oi; // planes of stride_
+    };
+
+    void group_hits(std::span<const geo::Hit> hits);
+    [[nodiscard]] std::uint32_t group_of(const geo::Hit& hit);
+    [[nodiscard]] std::uint32_t keyed_group(const geo::Hit& hit, const geo::Binding& binding,
+                                            std::uint32_t shading_class);
+    std::uint32_t new_group(std::uint32_t shading_class, std::uint32_t attributes);
+
+    void shade_group(const Group& group);
+    void shade_batch(const Group& group, std::span<const std::uint32_t> members);
+    void gather(const ShadingClass& c, std::span<const std::uint32_t> members);
+    void run_surface(const ShadingClass& c, Execution& execution,
+                     std::span<const std::uint32_t> members);
+    void run_atmosphere(const ShaderEntry& shader, const Execution& surface,
+                        std::span<const std::uint32_t> members);
+    [[nodiscard]] geo::Incident incident(std::uint32_t count) const;
+    void fill_own_variables(rt::ShadeBatch& batch, std::uint32_t count) const;
+    void fill_seeds(rt::ShadeBatch& batch, std::span<const std::uint32_t> members) const;
+    void run(rt::ShadeBatch& batch, Execution& execution);
+    void take_results(const float* Ci, const float* Oi);
+    void scatter(std::span<const std::uint32_t> members, const ShaderEntry& shader);
+
+    // Primitive variables in place of parameters: hit_overrides.cpp.
+    // Uniform parameters take one value per batch: brings members from `begin` on with the value of
+    // the first to the front and returns where they end.
+    [[nodiscard]] std::size_t equal_values(const ShadingClass& c, std::span<std::uint32_t> members,
+                                           std::size_t begin);
+    void bind_overrides(const ShadingClass& c, rt::ShadeBatch& batch);
+    [[nodiscard]] const rib::Param* overriding(const ShadingClass& c, const ParamOverride& o,
+                                               const geo::Hit& hit) const;
+
+    [[nodiscard]] std::uint32_t ray_of(std::uint32_t hit) const {
+        return rays_.ray.empty() ? hit : rays_.ray[hit];
+    }
+
+    const FrameContext& frame_;
+    const Camera& camera_;
+    const ShadingClasses& classes_;
+    ThreadState& thread_;
+
+    ShadingRays rays_;
+    std::span<const geo::Hit> hits_;
+    std::span<Shade> out_;
+    std::vector<Group> groups_;
+    std::vector<std::uint32_t> group_of_class_; // no_id: none yet
+    std::unordered_map<Key, std::uint32_t, KeyHash> group_of_key_;
+    std::vector<std::uint32_t> group_of_hit_, members_;
+    Batch batch_;
+    std::uint32_t stride_ = 0;
+    std::vector<float> values_;
+};
+
+} // namespace trace

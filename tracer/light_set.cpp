@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// The frame's lights as facts: which are ambient, directional, shadowed, and their categories.
+#include "tracer/lights.h"
+#include "tracer/shader_set.h"
+
+#include <algorithm>
+
+namespace trace {
+
+namespace {
+
+// Comma-separated; blanks around the names do not count.
+std::vector<std::string> split_categories(std::string_view text) {
+    std::vector<std::string> names;
+    constexpr std::string_view separators = ", \t";
+    for (std::size_t begin = text.find_first_not_of(separators); begin != std::string_view::npos;) {
+        const std::size_t end = std::min(text.find_first_of(separators, begin), text.size());
+        names.emplace_back(text.substr(begin, end - begin));
+        begin = text.find_first_not_of(separators, end);
+    }
+    return names;
+}
+
+int find_param(const ShaderEntry& shader, std::string_view name, sl_type type) {
+    const int index = shader.instance->shader().find_param(name);
+    const bool matches = index >= 0 && shader.object().params[index].type == type &&
+                         shader.object().params[index].array_length == 0;
+    return matches ? index : -1;
+}
+
+bool attribute_is(const rib::Attributes& attributes, const char* name, std::string_view wanted) {
+    const rib::Param* param = attributes.find(name);
+    return param != nullptr && !param->strings.empty() && param->strings.front() == wanted;
+}
+
+// Nothing such a light reads differs between points or executions.
+bool is_constant(const sl_object& object) {
+    constexpr std::uint64_t same_everywhere =
+        1ULL << SL_VAR_E | 1ULL << SL_VAR_ncomps | 1ULL << SL_VAR_Cl | 1ULL << SL_VAR_Ol;
+    constexpr std::uint32_t unlike_facts = SL_FACT_random | SL_FACT_traces | SL_FACT_textures |
+                                           SL_FACT_attributes | SL_FACT_lights |
+                                           SL_FACT_directional;
+    return (object.needed & ~same_everywhere) == 0 && (object.facts & unlike_facts) == 0;
+}
+
+void read_facts(LightInfo& info) {
+    const ShaderEntry& shader = *info.shader;
+    const sl_object& object = shader.object();
+    info.directional = (object.facts & SL_FACT_directional) != 0;
+    info.from_infinity = (object.facts & SL_FACT_solar) != 0;
+    info.reusable = (object.facts & (SL_FACT_random | SL_FACT_traces)) == 0;
+    info.is_constant = is_constant(object);
+    info.nondiffuse = find_param(shader, "__nondiffuse", SL_TYPE_float);
+    info.nonspecular = find_param(shader, "__nonspecular", SL_TYPE_float);
+    const int category = find_param(shader, "__category", SL_TYPE_string);
+    if (category >= 0 && object.params[category].detail == SL_DETAIL_uniform) {
+        info.categories = split_categories(shader.instance->uniform_string(category));
+    }
+}
+
+void report_area_light(const rib::Scene& scene, const rib::Light& light, base::Diag& diag) {
+    const base::SourcePos pos =
+        light.shader < scene.shaders.size() ? scene.shaders[light.shader].pos : base::SourcePos{};
+    diag.report_once(
+        "area lights", base::Severity::Info, base::Code::Unimplement, pos,
+        "AreaLightSource: area lights are not sampled yet; each lights from the origin of "
+        "its coordinate system");
+}
+
+} // namespace
+
+bool in_category(const std::vector<std::string>& categories, std::string_view wanted) {
+    if (wanted.empty()) {
+        return true;
+    }
+    const bool excludes = wanted.front() == '-';
+    if (excludes) {
+        wanted.remove_prefix(1);
+    }
+    const bool found = std::find(categories.begin(), categories.end(), wanted) != categories.end();
+    return found != excludes;
+}
+
+LightSet::LightSet(const rib::Scene& scene, const ShaderSet& shaders, base::Diag& diag) {
+    lights_.reserve(scene.lights.size());
+    for (const rib::Light& light : scene.lights) {
+        LightInfo& info = lights_.emplace_back();
+        info.shader = shaders.get(light.shader);
+        if (info.shader == nullptr) {
+            continue;
+        }
+        read_facts(info);
+        if (light.is_area) {
+            report_area_light(scene, light, diag);
+        }
+        if (light.attributes < scene.attributes.size()) {
+            const rib::Attributes& state = scene.attributes[light.attributes];
+            info.color = {state.color[0], state.color[1], state.color[2]};
+            info.opacity = {state.opacity[0], state.opacity[1], state.opacity[2]};
+            info.casts_shadows = info.directional && attribute_is(state, "light:shadows", "on");
+        }
+    }
+}
+
+LightList LightSet::list(const rib::Attributes& attributes) const {
+    LightList list;
+    for (const rib::LightId id : attributes.lights) {
+        if (id < lights_.size() && lights_[id].shader != nullptr) {
+            (lights_[id].directional ? list.directional : list.ambient).push_back(id);
+        }
+    }
+    return list;
+}
+
+} // namespace trace

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracer/renderer.h"
+
+#include <algorithm>
+
+namespace trace {
+
+Renderer::Renderer(RendererConfig config, base::Diag& diag)
+    : config_(std::move(config)), diag_(diag) {}
+Renderer::~Renderer() = default;
+
+rt::ShaderLibrary& Renderer::library_for(const rib::Options& options) {
+    std::vector<std::string> path = config_.shader_path_first;
+    const auto from_rib = options.search_paths.find("shader");
+    const std::vector<std::string>& rest =
+        from_rib != options.search_paths.end() ? from_rib->second : config_.shaders.search_path;
+    path.insert(path.end(), rest.begin(), rest.end());
+    const auto it = std::find_if(libraries_.begin(), libraries_.end(),
+                                 [&](const auto& item) { return item.first == path; });
+    if (it != libraries_.end()) {
+        return *it->second;
+    }
+    rt::ShaderLibrary::Config config = config_.shaders;
+    config.search_path = path;
+    libraries_.emplace_back(
+        path, std::make_unique<rt::ShaderLibrary>(std::move(config), strings_, diag_));
+    return *libraries_.back().second;
+}
+
+bool Renderer::render(std::unique_ptr<rib::Scene> scene) {
+    ++num_frames_;
+    if (scene->options.hider == "null") { // ri.md 6.5: no image
+        return true;
+    }
+    Stats frame_stats;
+    const FrameResult result = render_frame(
+        *scene, config_.settings, {library_for(scene->options), strings_, diag_, frame_stats});
+    stats_ += frame_stats;
+    if (result != FrameResult::Done) {
+        result_ = result;
+    }
+    return result == FrameResult::Done;
+}
+
+bool Renderer::make_texture(const rib::TextureRequest& request) {
+    diag_.report_once("texture:" + request.kind, base::Severity::Info, base::Code::Unimplement,
+                      request.pos,
+                      request.kind + ": textures are not made yet; the request is ignored");
+    return true;
+}
+
+} // namespace trace

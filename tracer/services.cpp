@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+// Services that shaders call while they run. Each entry unpacks the Execution and hands over to the
+// part that knows: lights, messages, spaces. Nothing here allocates per point.
+#include "tracer/services.h"
+
+#include "tracer/execution.h"
+#include "tracer/lights.h"
+#include "tracer/messages.h"
+#include "tracer/shader_set.h"
+
+#include <algorithm>
+#include <string_view>
+
+namespace trace {
+
+namespace {
+
+constexpr std::string_view current_space = "current";
+
+Execution& of(void* engine) {
+    return *static_cast<Execution*>(engine);
+}
+
+// --- spaces
+// -----------------------------------------------------------------------------------------------------
+
+const rib::Attributes* attributes_of(const Execution& execution) {
+    const BatchSubject* subject = execution.subject;
+    return subject != nullptr && subject->attributes < execution.frame.scene.attributes.size()
+               ? &execution.frame.scene.attributes[subject->attributes]
+               : nullptr;
+}
+
+// Object space of the first point: batches that name it hold one object space only
+// (SL_FACT_object_space). Lights, imagers and parameter defaults have no object: shader space
+// stands in ([R] of sl.md 5.9).
+base::Mat4 camera_from_object(const Execution& execution) {
+    const bool has_object = execution.asked_by == nullptr && execution.subject != nullptr &&
+                            !execution.subject->hits.empty() && execution.frame.world != nullptr;
+    if (!has_object) {
+        return execution.running.camera_from_shader;
+    }
+    const geo::Hit& hit = execution.subject->hits.front();
+    return execution.frame.world->camera_from_object(hit, hit.time);
+}
+
+std::optional<Space> find_space(const Execution& execution, std::string_view name) {
+    if (name.empty() || name == current_space) {
+        return Space{};
+    }
+    if (name == "shader") {
+        return Space::from(execution.running.camera_from_shader);
+    }
+    if (name == "object") {
+        return Space::from(camera_from_object(execution));
+    }
+    const Space* named = execution.frame.spaces.find(name, attributes_of(execution));
+    return named != nullptr ? std::optional<Space>(*named) : std::nullopt;
+}
+
+void report_unknown_space(const Execution& execution, std::string_view name) {
+    report_shader(execution, base::Severity::Warning, 0,
+                  "coordinate system \"" + std::string(name) +
+                      "\" is unknown; nothing is transformed");
+}
+
+SpaceCache::Item lookup_space(const Execution& execution, sl_string from, sl_string to) {
+    SpaceCache::Item item{from, to};
+    // No name means current space.
+    const auto from_space = find_space(execution, from != nullptr ? from : "");
+    const auto to_space = find_space(execution, to != nullptr ? to : "");
+    if (!from_space) {
+        report_unknown_space(execution, from);
+    }
+    if (!to_space) {
+        report_unknown_space(execution, to);
+    }
+    item.known = from_space && to_space;
+    const base::Mat4 m =
+        item.known ? to_space->space_from_camera * from_space->camera_from_space : base::Mat4{};
+    for (std::size_t i = 0; i < 16; ++i) {
+        item.m[i] = static_cast<float>(m.m[i / 4][i % 4]);
+    }
+    return item;
+}
+
+int32_t space(void* engine, sl_string from, sl_string to, uint32_t /*first*/, float* m) {
+    Execution& execution = of(engine);
+    SpaceCache& cache = execution.spaces;
+    const auto end = cache.items.begin() + static_cast<std::ptrdiff_t>(cache.size);
+    const auto it = std::find_if(cache.items.begin(), end, [&](const SpaceCache::Item& item) {
+        return item.from == from && item.to == to;
+    });
+    if (it != end) {
+        std::copy(it->m.begin(), it->m.end(), m);
+        return it->known ? 1 : 0;
+    }
+    const SpaceCache::Item item = lookup_space(execution, from, to);
+    if (cache.size < SpaceCache::capacity) {
+        cache.items[cache.size++] = item;
+    }
+    std::copy(item.m.begin(), item.m.end(), m);
+    return item.known ? 1 : 0;
+}
+
+// --- lights
+// -----------------------------------------------------------------------------------------------------
+
+int32_t light_count(void* engine) {
+    const Execution& execution = of(engine);
+    const bool has_lights = execution.thread != nullptr && execution.subject != nullptr &&
+                            execution.subject->lights != nullptr;
+    return has_lights ? static_cast<int32_t>(execution.subject->lights->directional.size()) : 0;
+}
+
+uint32_t light(void* engine, const sl_light_query* query, sl_light_result* result) {
+    return query->index < light_count(engine) ? run_light(of(engine), *query, *result) : 0;
+}
+
+void ambient(void* engine, uint32_t first, uint32_t mask, const float* P, float* C) {
+    run_ambient(of(engine), first, mask, P, C);
+}
+
+// --- state
+// ------------------------------------------------------------------------------------------------------
+
+uint32_t message(void* engine, int32_t kind, sl_string name, int32_t type, int32_t array_length,
+                 uint32_t first, uint32_t mask, float* value) {
+    return answer_message(of(engine), {kind, name, type, array_length, first, mask, value});
+}
+
+void print(void* engine, sl_string text) {
+    if (ThreadState* thread = of(engine).thread) {
+        thread->printed += text;
+    }
+}
+
+sl_string intern(void* engine, const char* text) {
+    return of(engine).frame.strings.intern(text);
+}
+
+sl_string shader_name(void* engine, sl_string type) {
+    const Execution& execution = of(engine);
+    return execution.frame.strings.intern(type == nullptr ? execution.running.name
+                                                          : bound_shader_name(execution, type));
+}
+
+void report(void* engine, int32_t line, const char* text) {
+    report_shader(of(engine), base::Severity::Warning, line, text);
+}
+
+void depth_range(void* engine, float* near_far) {
+    const rib::Options& options = of(engine).frame.scene.options;
+    near_far[0] = options.near_clip;
+    near_far[1] = options.far_clip;
+}
+
+int32_t raylevel(void* engine) {
+    return of(engine).ray_level;
+}
+
+int32_t ray_kind(void* engine) {
+    return of(engine).ray_kind;
+}
+
+} // namespace
+
+const sl_services& service_table() {
+    static constexpr sl_services table = {
+#define SL_SERVICE(name, result, arguments, note) .name = name,
+#include "runtime/abi/sl_services.def"
+#undef SL_SERVICE
+    };
+    return table;
+}
+
+} // namespace trace

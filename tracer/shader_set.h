@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// The shaders of a frame, loaded and bound. In: the scene's shader calls. Out: one instance per
+// call, with its parameters in camera space (sl.md 5.8: values of a call lie in the space of the
+// call). A surface that cannot be had is replaced by the built-in default surface after one
+// message; other shaders are left out. Immutable once made.
+#pragma once
+
+#include "ribtools/scene.h"
+#include "runtime/shader.h"
+#include "tracer/spaces.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace trace {
+
+struct ShaderEntry {
+    std::string name;
+    std::unique_ptr<rt::ShaderInstance> instance; // never null in a finished set
+    base::Mat4 camera_from_shader;
+    base::SourcePos pos;
+
+    [[nodiscard]] const sl_object& object() const { return instance->object(); }
+};
+
+// What instances are made with and from.
+struct ShaderSources {
+    const rib::Scene& scene;
+    const Spaces& spaces;
+    rt::ShaderLibrary& library;
+    rt::StringTable& strings;
+    base::Diag& diag;
+};
+
+class ShaderSet {
+public:
+    // Loads every shader that something drawn refers to.
+    explicit ShaderSet(const ShaderSources& sources);
+    ~ShaderSet();
+
+    // nullptr: none given, missing, broken or "null" where that means nothing to do.
+    [[nodiscard]] const ShaderEntry* get(rib::ShaderId id) const {
+        return id < entries_.size() ? entries_[id] : nullptr;
+    }
+    // Never nullptr.
+    [[nodiscard]] const ShaderEntry* surface(rib::ShaderId id) const {
+        const ShaderEntry* entry = get(id);
+        return entry != nullptr ? entry : default_surface_;
+    }
+
+private:
+    void load(const ShaderSources& sources, rib::ShaderId id, sl_shader_type type,
+              bool in_camera_space);
+    [[nodiscard]] const ShaderEntry* shareable(const rib::Scene& scene, rib::ShaderId id) const;
+
+    std::vector<std::unique_ptr<ShaderEntry>> owned_;
+    std::vector<const ShaderEntry*> entries_; // by ShaderId
+    std::vector<bool> tried_;
+    const ShaderEntry* default_surface_ = nullptr;
+};
+
+// A parameter of a request as a shader of this interface binds it: points, vectors, normals and
+// matrices taken from `space` to camera space, hpoints divided; a name that was never declared
+// takes its type from the shader. Pure.
+[[nodiscard]] rt::BoundValue bound_value(const rib::Param& param, const sl_object& object,
+                                         const Space& space);
+
+} // namespace trace

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+// Calls of built-in functions, by their rows in sl_builtins.def: slv_<body> on lanes, slu_<body> on
+// uniform values.
+#include "slc/builtins.h"
+#include "slc/emit_common.h"
+
+#include <algorithm>
+
+namespace slc {
+
+// One call being put together.
+struct Emitter::Call {
+    const Stmt& s;
+    const Block& b;
+    const BuiltinRow& row;
+    bool lanes;
+    std::vector<std::string> arguments;
+    // Outputs that go through a temporary: (variable, temporary).
+    std::vector<std::pair<VarId, std::string>> through;
+};
+
+namespace {
+
+constexpr std::string_view sl_type_names[] = {"SL_TYPE_void",   "SL_TYPE_float",  "SL_TYPE_color",
+                                              "SL_TYPE_point",  "SL_TYPE_vector", "SL_TYPE_normal",
+                                              "SL_TYPE_matrix", "SL_TYPE_string"};
+
+std::string joined(const std::vector<std::string>& parts) {
+    std::string text;
+    for (const std::string& p : parts) {
+        text += (text.empty() ? "" : ", ") + p;
+    }
+    return text;
+}
+
+} // namespace
+
+bool Emitter::runs_on_lanes(const Stmt& s) const {
+    if (mode_ == Mode::Init || (s.dst != no_var && !varying(s.dst))) {
+        return false;
+    }
+    const BuiltinRow& row = builtin_rows()[static_cast<std::size_t>(s.builtin)];
+    const bool any_varying =
+        std::any_of(s.args.begin(), s.args.end(), [this](VarId a) { return varying(a); });
+    return any_varying || (s.dst != no_var && (row.has(PropVaries) || row.has(PropContext)));
+}
+
+void Emitter::call(const Stmt& s, const Block& b) {
+    const BuiltinRow& row = builtin_rows()[static_cast<std::size_t>(s.builtin)];
+    Call c{s, b, row, runs_on_lanes(s), {}, {}};
+    refresh_planes(row.reads, b);
+    Expr value;
+    value.varying = c.lanes;
+    value.form = form_of(row.result.kind == ArgKind::Exact ? row.result.type : Type::Vector);
+    if (row.body == "arraylength") {
+        value = Expr{float_literal(static_cast<float>(var(s.args[0]).array_length)), Form::Float,
+                     false, false, Prec::Atom};
+    } else if (row.repeats_last && (row.body.starts_with("min_") || row.body.starts_with("max_"))) {
+        value = chained(c);
+    } else {
+        if (row.has(PropContext)) {
+            c.arguments.push_back(c.lanes ? "call, " + mask(b) : "call");
+        }
+        if (row.body.starts_with("spline_")) {
+            spline_arguments(c);
+        } else if (row.body == "concat") {
+            c.arguments.push_back(knot_array(c, 0));
+            c.arguments.push_back(std::to_string(s.args.size()));
+        } else {
+            fixed_arguments(c);
+        }
+        value.text =
+            (c.lanes ? "slv_" : "slu_") + std::string(row.body) + "(" + joined(c.arguments) + ")";
+    }
+    if (may_defer(s, b) && c.through.empty()) {
+        defer(s.dst, std::move(value));
+        return;
+    }
+    note_place(s.loc);
+    if (s.dst == no_var) {
+        out_.line(value.text + ";");
+    } else {
+        assign(s.dst, value, b);
+    }
+    for (const auto& [v, temporary] : c.through) {
+        Expr result;
+        result.text = temporary;
+        result.form = form(v);
+        result.varying = c.lanes;
+        assign(v, result, b);
+    }
+}
+
+// Built-ins read predefined variables from the batch: what the shader has changed must be there.
+void Emitter::refresh_planes(std::uint64_t reads, const Block& b) {
+    for (std::size_t i = 0; i < program_.vars.size() && mode_ == Mode::Shade; ++i) {
+        const Var& v = program_.vars[i];
+        if (v.kind != VarKind::Global || (reads & results_ & std::uint64_t{1} << v.index) == 0 ||
+            !flow_.place(static_cast<VarId>(i)).is_written ||
+            declared_.count(static_cast<VarId>(i)) == 0) {
+            continue;
+        }
+        out_.line("sl_store_" + std::string(form_suffix(form(static_cast<VarId>(i)))) + "(call, " +
+                  mask(b) + ", batch->main->var[SL_VAR_" + v.name + "], " + names_[i] + ");");
+    }
+}
+
+void Emitter::fixed_arguments(Call& c) {
+    std::size_t next = 0;
+    const bool name_first = c.row.has(PropChannel);
+    for (std::size_t r = 0; r < c.row.args.size() && next < c.s.args.size(); ++r) {
+        const ArgSpec& spec = c.row.args[r];
+        const VarId v = c.s.args[next++];
+        if (spec.is_output) {
+            output_argument(c, v);
+        } else if (var(v).type == Type::String) {
+            c.arguments.push_back(as_uniform(use(v), c.b).text);
+        } else {
+            const Form wanted =
+                spec.kind == ArgKind::Exact ? form_of(spec.type) : form_of(Type::Vector);
+            c.arguments.push_back(fit(use(v), wanted, c.lanes).text);
+        }
+        if (name_first && r == 0 && next < c.s.args.size()) {
+            c.arguments.push_back(as_uniform(as_float(use(c.s.args[next++])), c.b).text);
+        }
+    }
+    if (c.row.takes_pairs || c.row.takes_values) {
+        value_arguments(c, next);
+    }
+}
+
+void Emitter::output_argument(Call& c, VarId v) {
+    settle_readers(v);
+    const bool any_type = c.row.args.size() > 0 &&
+                          std::any_of(c.row.args.begin(), c.row.args.end(), [](const ArgSpec& a) {
+                              return a.is_output && a.kind == ArgKind::Anything;
+                          });
+    if (any_type) {
+        c.arguments.push_back("&" + typed_value(v)); // the body leaves masked lanes alone
+        return;
+    }
+    const bool keeps_mask = c.row.has(PropContext) || !flow_.must_blend(v, c.b);
+    if (varying(v) == c.lanes && keeps_mask) {
+        c.arguments.push_back("&" + name_of(v).text);
+        return;
+    }
+    const std::string temporary = fresh("out");
+    const Expr before = fit(name_of(v), form(v), c.lanes);
+    out_.line(std::string(type_word(form(v), c.lanes)) + " " + temporary + " = " + before.text +
+              ";");
+    c.arguments.push_back("&" + temporary);
+    c.through.emplace_back(v, temporary);
+}
+
+void Emitter::value_arguments(Call& c, std::size_t first) {
+    std::string list;
+    for (std::size_t i = first; i < c.s.args.size(); ++i) {
+        list += (i > first ? ", " : "") +
+                typed_value(c.s.args[i]).substr(std::string("(sl_value)").size());
+    }
+    const std::size_t n = c.s.args.size() - first;
+    c.arguments.push_back(n == 0 ? "0" : "(sl_value[]){" + list + "}");
+    c.arguments.push_back(std::to_string(n));
+}
+
+// [basis,] value, knots as arguments or as one array.
+void Emitter::spline_arguments(Call& c) {
+    std::size_t next = 0;
+    if (var(c.s.args[0]).type == Type::String) {
+        c.arguments.push_back(as_uniform(use(c.s.args[next++]), c.b).text);
+    } else {
+        c.arguments.emplace_back("0");
+    }
+    c.arguments.push_back(fit(use(c.s.args[next++]), Form::Float, c.lanes).text);
+    const VarId knots = c.s.args[next];
+    if (var(knots).array_length == 0) {
+        c.arguments.push_back(knot_array(c, next));
+        c.arguments.push_back(std::to_string(c.s.args.size() - next));
+        return;
+    }
+    const std::string length = std::to_string(var(knots).array_length);
+    reading_.push_back(knots);
+    if (varying(knots) == c.lanes) {
+        c.arguments.push_back(name_of(knots).text);
+    } else {
+        const std::string copy = fresh("out");
+        Expr element = name_of(knots);
+        element.text += "[k]";
+        out_.line(std::string(type_word(form(knots), c.lanes)) + " " + copy + "[" + length + "];");
+        out_.line("for (int k = 0; k < " + length + "; k++)");
+        out_.line("    " + copy + "[k] = " + fit(element, form(knots), c.lanes).text + ";");
+        c.arguments.push_back(copy);
+    }
+    c.arguments.push_back(length);
+}
+
+std::string Emitter::knot_array(Call& c, std::size_t first) {
+    Form wanted = Form::Float;
+    for (std::size_t i = first; i < c.s.args.size(); ++i) {
+        wanted = std::max(wanted, form(c.s.args[i]));
+    }
+    const bool lanes = c.lanes && wanted != Form::String;
+    std::string list;
+    for (std::size_t i = first; i < c.s.args.size(); ++i) {
+        Expr e = use(c.s.args[i]);
+        e = wanted == Form::String ? as_uniform(std::move(e), c.b)
+                                   : fit(std::move(e), wanted, lanes);
+        list += (i > first ? ", " : "") + e.text;
+    }
+    return "(" + std::string(type_word(wanted, lanes)) + "[]){" + list + "}";
+}
+
+// min(a, b, c) = min(min(a, b), c)
+Expr Emitter::chained(Call& c) {
+    const Form wanted = c.row.body.ends_with("_3") ? Form::Triple : Form::Float;
+    Expr e = fit(use(c.s.args[0]), wanted, c.lanes);
+    for (std::size_t i = 1; i < c.s.args.size(); ++i) {
+        e = apply(c.row.body, wanted, c.lanes,
+                  {e.text, fit(use(c.s.args[i]), wanted, c.lanes).text});
+    }
+    return e;
+}
+
+std::string Emitter::typed_value(VarId v) {
+    return "(sl_value){" + std::string(sl_type_names[static_cast<std::size_t>(var(v).type)]) +
+           ", " + (varying(v) ? "1" : "0") + ", " + std::to_string(var(v).array_length) + ", " +
+           address_of(v) + "}";
+}
+
+std::string Emitter::address_of(VarId v) {
+    settle(v);
+    const Expr e = use(v);
+    if (var(v).kind == VarKind::Const && var(v).array_length == 0) {
+        return "(" + std::string(type_word(e.form, false)) + "[]){" + e.text + "}";
+    }
+    if (e.truth) {
+        return "(" + std::string(type_word(Form::Float, e.varying)) + "[]){" + as_float(e).text +
+               "}";
+    }
+    return (var(v).array_length > 0 ? "(void *)" : "(void *)&") + e.text;
+}
+
+} // namespace slc

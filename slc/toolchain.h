@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// The system's C compiler and what emitted code is compiled and linked with: sl_shader.h and the
+// archives of built-in bodies. C text goes in, a sealed shader object comes out. No shell is
+// involved.
+#pragma once
+
+#include "runtime/base/diag.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace slc {
+
+struct Toolchain {
+    std::string compiler;    // absolute path
+    std::string include_dir; // -I, may list several separated by ':'
+    std::string archive_dir; // libsl_lanes8.a, libsl_lanes4.a
+};
+
+// Looks for `compiler` ("" = cc, gcc, clang) on PATH and for our files beside the running program:
+// ../include/perigee and
+// ../lib/perigee where it is installed, the build tree otherwise. Reports what is missing and what
+// to install.
+[[nodiscard]] std::optional<Toolchain> find_toolchain(const std::string& compiler,
+                                                      base::Diag& diag);
+
+// The C text of one variant.
+struct VariantText {
+    int lanes = 8;
+    std::string c;
+};
+
+struct CompileFlags {
+    int optimisation = 2;
+    std::vector<std::string> extra; // for tests and sanitizers
+};
+
+// Everything about the toolchain that changes objects, for cache keys: paths, sizes and times
+// instead of versions, because asking the compiler costs milliseconds.
+[[nodiscard]] std::string toolchain_identity(const Toolchain& tools, const CompileFlags& flags);
+
+// Compiles the variants, links them with the archives and puts the sealed object in place by a
+// rename. On failure no file is left at slo_path and the compiler's messages have been reported.
+[[nodiscard]] bool build_shared_object(const Toolchain& tools,
+                                       const std::vector<VariantText>& variants,
+                                       const CompileFlags& flags, const std::string& slo_path,
+                                       base::Diag& diag);
+
+// The best variant width this processor runs.
+[[nodiscard]] int native_lanes();
+
+} // namespace slc

@@ -50,6 +50,7 @@ public:
     Camera(const rib::Scene& scene, base::Diag& diag);
 
     [[nodiscard]] const Raster& raster() const { return raster_; }
+    // Rays meet in an eye point; otherwise they are parallel.
     [[nodiscard]] bool perspective() const { return perspective_; }
     [[nodiscard]] double near_clip() const { return near_; }
     [[nodiscard]] double far_clip() const { return far_; } // infinity from RI_INFINITY on
@@ -99,7 +100,8 @@ private:
         [[nodiscard]] base::V3d at(double x, double y) const { return v0 + x * vx + y * vy; }
     };
     void init_projection(const rib::Scene& scene, base::Diag& diag);
-    void init_rays(const base::Mat4& extra);
+    [[nodiscard]] bool init_rays(const base::Mat4& screen_from_camera);
+    void normalise_depth();
     void init_lens(const rib::Options& options, base::Diag& diag);
     void init_planes(const rib::Options& options);
     void clip(Ray& ray) const;
@@ -112,8 +114,9 @@ private:
     Raster raster_;
     bool perspective_ = false;
     bool simple_ = true; // origin z = 0, direction z = 1, no planes, no lens: the vectorised path
-    double fov_deg_ = 90, near_ = 0, far_ = 0;
+    double near_ = 0, far_ = 0;
     double lens_radius_ = 0, focal_distance_ = 0;
+    float unit_per_px_ = 1;
     base::Mat4 camera_from_world_, screen_from_camera_, ndc_from_screen_, raster_from_screen_;
     Affine origin_, direction_;
     base::V3d origin_w_{1, 0,

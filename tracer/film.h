@@ -91,16 +91,15 @@ public:
     [[nodiscard]] PixelRange sample_pixels(std::size_t bucket) const;
 
     // A buffer for a bucket, every sample uncovered. Thread-safe.
-    [[nodiscard]] SampleBuffer buffer(std::size_t bucket) const;
+    [[nodiscard]] SampleBuffer buffer(std::size_t bucket);
     // Hands the samples of a bucket over. Filters every bucket that became complete. Thread-safe.
     // Samples that are not finite are replaced by 0 and counted.
     void submit(std::size_t bucket, SampleBuffer&& samples);
 
     [[nodiscard]] bool complete() const;
     [[nodiscard]] std::uint64_t num_bad_samples() const { return num_bad_; }
-    // Bytes of samples held now, and at most so far.
-    [[nodiscard]] std::size_t bytes_held() const { return bytes_held_; }
-    [[nodiscard]] std::size_t peak_bytes() const { return bytes_peak_; }
+    // Bytes of samples held at most so far.
+    [[nodiscard]] std::size_t peak_bytes() const;
 
     // The crop range; pixels of buckets that are not filtered yet (or lie beyond the picture) are
     // empty. Read it when no thread submits.
@@ -109,23 +108,34 @@ public:
 
 private:
     struct Bucket;
+    struct Sources;
+    struct SourcePixel;
     Film(const Raster& raster, const Sampler& sampler, const FilterWeights& weights,
          const FilmSettings& settings);
     void make_buckets(const PixelRange& rendered);
     [[nodiscard]] std::vector<std::size_t> neighbours(std::size_t bucket) const;
-    void filter_bucket(std::size_t bucket);
     void release(std::size_t bucket);
+    [[nodiscard]] Sources sources(std::size_t bucket) const;
+    template <class Body>
+    void for_neighbours(const Sources& from, int x, int y, const Body& body) const;
+    void filter_bucket(std::size_t bucket);
+    void filter_pixel(const Sources& from, int x, int y);
+    [[nodiscard]] float depth(const SourcePixel& own) const;
+    [[nodiscard]] float extra_channel(const Sources& from, int x, int y, int channel,
+                                      bool plain) const;
 
     const Sampler& sampler_;
     const FilterWeights& weights_;
     FilmSettings settings_;
-    int columns_ = 0, rows_ = 0, near_x_ = 1, near_y_ = 1;
+    int columns_ = 0, rows_ = 0;
+    int near_x_ = 1, near_y_ = 1; // buckets that filters reach
     std::vector<Bucket> buckets_;
-    std::size_t num_done_ = 0;
-    mutable std::mutex mutex_;
     Image image_;
     std::atomic<std::uint64_t> num_bad_{0};
-    std::atomic<std::size_t> bytes_held_{0}, bytes_peak_{0};
+
+    mutable std::mutex mutex_; // guards what follows and the counts and buffers of the buckets
+    std::size_t num_done_ = 0, bytes_held_ = 0, bytes_peak_ = 0;
+    std::vector<SampleBuffer> pool_; // memory to use again
 };
 
 } // namespace trace

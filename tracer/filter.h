@@ -10,6 +10,8 @@
 #include "runtime/base/diag.h"
 #include "tracer/sampler.h"
 
+#include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -29,6 +31,8 @@ public:
     [[nodiscard]] double width_y() const { return width_y_; }
     // x, y relative to the pixel centre, pixels.
     [[nodiscard]] double value(double x_px, double y_px) const;
+    // The two factors of a separable filter; false if it is not one.
+    bool axis_values(double x_px, double y_px, double& fx, double& fy) const;
     // How many pixels beyond its own a pixel takes samples from, along each axis.
     [[nodiscard]] int reach_x() const;
     [[nodiscard]] int reach_y() const;
@@ -45,13 +49,35 @@ public:
 
     [[nodiscard]] int reach_x() const { return reach_x_; }
     [[nodiscard]] int reach_y() const { return reach_y_; }
-    // Weights of the samples of a pixel with this pattern for the pixel (dx, dy) *pixels before*
-    // it: the sample's pixel is at output pixel + (dx, dy). per_pixel values.
-    [[nodiscard]] std::span<const float> weights(std::size_t pattern, int dx, int dy) const;
+    // Pixels that contribute to one.
+    [[nodiscard]] std::size_t neighbours() const {
+        return static_cast<std::size_t>(2 * reach_x_ + 1) *
+               static_cast<std::size_t>(2 * reach_y_ + 1);
+    }
+    // Where the weights are not all zero: samples first .. last-1 of the pixel.
+    struct Span {
+        std::uint16_t first = 0, last = 0;
+    };
+    // Neighbours are numbered row by row: number (dy + reach_y) * (2 reach_x + 1) + dx + reach_x is
+    // the pixel at (dx, dy) from the one being computed; `pattern` is that of the neighbour.
+    [[nodiscard]] Span span(std::size_t pattern, std::size_t neighbour) const {
+        return spans_[pattern * neighbours() + neighbour];
+    }
+    [[nodiscard]] const float* weights(std::size_t pattern, std::size_t neighbour) const {
+        return weights_.data() +
+               (pattern * neighbours() + neighbour) * static_cast<std::size_t>(per_pixel_);
+    }
+    // A sum of weights below this says nothing: 1/1000 of the filter's centre.
+    [[nodiscard]] float least_sum() const { return floor_; }
 
 private:
+    void fill_sample(const Filter& filter, double x, double y, float* out) const;
+    static Span used_span(std::span<const float> weights);
+
     int reach_x_, reach_y_, per_pixel_;
-    std::vector<float> weights_; // [pattern][dy][dx][sample]
+    float floor_;
+    std::vector<Span> spans_;    // [pattern][neighbour]
+    std::vector<float> weights_; // [pattern][neighbour][sample]
 };
 
 } // namespace trace

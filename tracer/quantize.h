@@ -23,13 +23,15 @@ struct Exposure {
 void apply_exposure(Image& image, const Exposure& exposure);
 
 enum class Storage : std::uint8_t { U8, S8, U16, S16, U32, S32, Float };
+// The smallest type that holds min..max; signed if min is negative.
+[[nodiscard]] Storage storage_for(double min, double max);
 [[nodiscard]] int storage_bytes(Storage storage);
 [[nodiscard]] bool storage_signed(Storage storage);
 
 struct Quantizer {
     double zero = 0, one = 255, min = 0, max = 255, dither = 0.5;
 
-    // one = 0: Float. Otherwise the smallest type that holds min..max.
+    // one = 0: Float.
     [[nodiscard]] Storage storage() const;
     // round(zero + value (one - zero) + dither noise), clamped to min..max and to the storage type.
     // noise in [-1, 1); NaN counts as 0. Not for Float.

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+// OpenEXR: scan lines, R G B A half or float, depth always float; the crop as data window in the
+// frame's display window; worldToCamera, worldToNDC; alpha premultiplied. Values are not quantised.
+// Single-threaded: the bytes repeat.
+#include "tracer/display_format.h"
+
+#include <Imath/half.h>
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfStringAttribute.h>
+
+#include <algorithm>
+#include <exception>
+#include <limits>
+#include <stdexcept>
+
+namespace trace {
+
+namespace {
+
+constexpr int band_rows = 64; // converted and written at once
+
+class ExrStream : public Imf::OStream {
+public:
+    explicit ExrStream(OutputFile& file) : Imf::OStream(file.path().c_str()), file_(file) {}
+    void write(const char bytes[], int count) override {
+        if (!file_.write(bytes, static_cast<std::size_t>(count))) {
+            throw std::runtime_error("write failed");
+        }
+    }
+    std::uint64_t tellp() override { return file_.position(); }
+    void seekp(std::uint64_t position) override {
+        if (!file_.seek(position)) {
+            throw std::runtime_error("seek failed");
+        }
+    }
+
+private:
+    OutputFile& file_;
+};
+
+struct ExrCompression {
+    const char* name;
+    Imf::Compression scheme;
+};
+constexpr ExrCompression compressions[] = {
+    {"zip", Imf::ZIP_COMPRESSION}, // first: the default
+    {"zips", Imf::ZIPS_COMPRESSION}, {"piz", Imf::PIZ_COMPRESSION},
+    {"rle", Imf::RLE_COMPRESSION},   {"pxr24", Imf::PXR24_COMPRESSION},
+    {"b44", Imf::B44_COMPRESSION},   {"b44a", Imf::B44A_COMPRESSION},
+    {"dwaa", Imf::DWAA_COMPRESSION}, {"dwab", Imf::DWAB_COMPRESSION},
+    {"none", Imf::NO_COMPRESSION},
+};
+
+Imf::Compression compression_of(const FilePicture& p, std::string& note) {
+    for (const ExrCompression& row : compressions) {
+        if (p.compression == row.name) {
+            return row.scheme;
+        }
+    }
+    if (!p.compression.empty()) {
+        note = "OpenEXR knows no compression \"" + p.compression +
+               "\" (zip, zips, piz, rle, none ...); zip is used";
+    }
+    return compressions[0].scheme;
+}
+
+Imath::M44f matrix(const base::Mat4& m) {
+    Imath::M44f out; // row vectors, as ours
+    for (int i = 0; i < 4; ++i) {
+        for (int j = 0; j < 4; ++j) {
+            out[i][j] = static_cast<float>(m.m[i][j]);
+        }
+    }
+    return out;
+}
+
+Imf::PixelType pixel_type(const FilePicture& p, const FileChannel& c) {
+    const bool precise = c.role == ChannelRole::Depth || p.exr_type == ExrPixelType::Float;
+    return precise ? Imf::FLOAT : Imf::HALF;
+}
+
+Imf::Header make_header(const FilePicture& p, std::string& note) {
+    const Imath::Box2i frame({0, 0}, {p.info.xres - 1, p.info.yres - 1});
+    const Imath::Box2i data({p.pixels.x0, p.pixels.y0}, {p.pixels.x1 - 1, p.pixels.y1 - 1});
+    Imf::Header header(frame, data, static_cast<float>(p.info.pixel_aspect));
+    header.compression() = compression_of(p, note);
+    Imf::addWorldToCamera(header, matrix(p.info.camera_from_world));
+    Imf::addWorldToNDC(header, matrix(p.info.ndc_from_world));
+    header.insert("software", Imf::StringAttribute("Perigee"));
+    for (const FileChannel& c : p.channels) {
+        header.channels().insert(c.name, Imf::Channel(pixel_type(p, c)));
+    }
+    return header;
+}
+
+// Half has no room above 65504; infinity there would spread in every later filter.
+half to_half(float value) {
+    constexpr float largest = 65504;
+    return half(std::clamp(value, -largest, largest));
+}
+
+// The rows of one channel as bytes of its pixel type.
+struct Band {
+    Imf::PixelType type;
+    std::vector<half> halves;
+    std::vector<float> floats;
+
+    void fill(std::span<const float> values) {
+        if (type == Imf::FLOAT) {
+            floats.assign(values.begin(), values.end());
+        } else {
+            halves.resize(values.size());
+            std::transform(values.begin(), values.end(), halves.begin(), to_half);
+        }
+    }
+    // Imf addresses pixels by their place in the frame: base is where (0, 0) would be.
+    Imf::Slice slice(const PixelRange& pixels, int first_row) {
+        char* bytes = type == Imf::FLOAT ? reinterpret_cast<char*>(floats.data())
+                                         : reinterpret_cast<char*>(halves.data());
+        const std::size_t size = type == Imf::FLOAT ? sizeof(float) : sizeof(half);
+        return Imf::Slice::Make(type, bytes, Imath::V2i(pixels.x0, first_row), pixels.width(),
+                                band_rows, size, size * static_cast<std::size_t>(pixels.width()));
+    }
+};
+
+void write_bands(const FilePicture& p, Imf::OutputFile& out) {
+    std::vector<Band> bands;
+    for (const FileChannel& c : p.channels) {
+        bands.push_back({pixel_type(p, c), {}, {}});
+    }
+    const auto width = static_cast<std::size_t>(p.width());
+    for (int row = 0; row < p.height(); row += band_rows) {
+        const int rows = std::min(band_rows, p.height() - row);
+        Imf::FrameBuffer frame;
+        for (std::size_t c = 0; c < bands.size(); ++c) {
+            bands[c].fill(p.channels[c].values.subspan(static_cast<std::size_t>(row) * width,
+                                                       static_cast<std::size_t>(rows) * width));
+            frame.insert(p.channels[c].name, bands[c].slice(p.pixels, p.pixels.y0 + row));
+        }
+        out.setFrameBuffer(frame);
+        out.writePixels(rows);
+    }
+}
+
+} // namespace
+
+WriteOutcome write_exr(const FilePicture& picture, OutputFile& file) {
+    WriteOutcome outcome;
+    try {
+        ExrStream stream(file);
+        Imf::OutputFile out(stream, make_header(picture, outcome.note), 0);
+        write_bands(picture, out);
+    } catch (const std::exception& e) {
+        outcome.ok = false;
+        outcome.error = e.what();
+    }
+    // The destructor above writes the line table and swallows what it throws.
+    outcome.ok = outcome.ok && file.error() == 0;
+    return outcome;
+}
+
+} // namespace trace

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// Between display.cpp and the three format writers: what a file shall hold, chosen and checked
+// already. A writer gets an open OutputFile, fills it and returns; it neither commits nor reports.
+#pragma once
+
+#include "tracer/display.h"
+#include "tracer/output_file.h"
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace trace {
+
+enum class ChannelRole : std::uint8_t { Color, Alpha, Depth, Other };
+
+struct FileChannel {
+    std::string name; // R G B A Z, or of an output variable
+    ChannelRole role = ChannelRole::Color;
+    std::span<const float> values; // PixelRange of the file, row by row
+    Quantizer quantizer;
+    int dither_channel = 0;
+};
+
+enum class ExrPixelType : std::uint8_t { Half, Float };
+
+struct FilePicture {
+    PixelRange pixels;
+    PictureInfo info;
+    std::vector<FileChannel> channels;
+    Storage storage = Storage::U8; // of all channels; OpenEXR has its own types
+    std::string compression;       // as the request says; "" = the format's default
+    ExrPixelType exr_type = ExrPixelType::Half;
+    float resolution[2] = {72, 72}; // pixels per unit
+    bool resolution_in_cm = false;
+
+    [[nodiscard]] int width() const { return pixels.width(); }
+    [[nodiscard]] int height() const { return pixels.height(); }
+    [[nodiscard]] const FileChannel* find(ChannelRole role) const;
+    [[nodiscard]] int count(ChannelRole role) const;
+    [[nodiscard]] std::size_t row_bytes() const {
+        return static_cast<std::size_t>(width()) * channels.size() *
+               static_cast<std::size_t>(storage_bytes(storage));
+    }
+};
+
+// What a writer says. `note`: something the user should know although the file is written.
+struct WriteOutcome {
+    bool ok = true;
+    std::string error; // of the library; the file's own errno comes first
+    std::string note;
+};
+
+// Pixel row y (from 0) in the storage type, channels interleaved, native byte order. alpha_divides:
+// colors are divided by alpha before they are quantised, for formats with unassociated alpha.
+void quantise_row(const FilePicture& picture, int y, bool alpha_divides, std::span<std::byte> out);
+
+[[nodiscard]] WriteOutcome write_tiff(const FilePicture& picture, OutputFile& file);
+[[nodiscard]] WriteOutcome write_png(const FilePicture& picture, OutputFile& file);
+[[nodiscard]] WriteOutcome write_exr(const FilePicture& picture, OutputFile& file);
+
+} // namespace trace

@@ -1,0 +1,438 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracer/film.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+#include <new>
+#include <string>
+#include <unistd.h>
+
+namespace trace {
+
+namespace {
+
+constexpr int min_bucket_px = 4, max_bucket_px = 256;
+constexpr std::size_t max_pixels = std::size_t{1} << 28;
+constexpr std::size_t max_bucket_samples = std::size_t{1} << 20;
+
+// Four floats in a register. A Sample is two of them.
+using Float4 [[gnu::vector_size(16), gnu::may_alias]] = float;
+
+struct Sum {
+    Float4 low{}, high{};
+
+    void add(const Sample& sample, float weight) {
+        const auto* v = reinterpret_cast<const Float4*>(&sample);
+        low += v[0] * weight;
+        high += v[1] * weight;
+    }
+};
+static_assert(offsetof(Sample, opacity) == 12 && offsetof(Sample, one) == 24);
+
+std::size_t physical_bytes() {
+    const long pages = ::sysconf(_SC_PHYS_PAGES), size = ::sysconf(_SC_PAGE_SIZE);
+    return pages > 0 && size > 0 ? static_cast<std::size_t>(pages) * static_cast<std::size_t>(size)
+                                 : std::numeric_limits<std::size_t>::max();
+}
+
+// x - x is 0 for every finite x, NaN otherwise.
+bool finite(const Sample& s) {
+    const auto* v = reinterpret_cast<const Float4*>(&s);
+    const Float4 a = v[0] - v[0], b = v[1] - v[1];
+    const Float4 sum = a + b;
+    return sum[0] + sum[1] + sum[2] + sum[3] == 0;
+}
+
+} // namespace
+
+// --- settings
+// ---------------------------------------------------------------------------------------------------
+
+DepthFilter depth_filter(const rib::Options& options, base::Diag& diag) {
+    const std::string name = options.hider_params.get_string("depthfilter", "min");
+    if (name == "min") {
+        return DepthFilter::Min;
+    }
+    if (name == "max") {
+        return DepthFilter::Max;
+    }
+    if (name == "average") {
+        return DepthFilter::Average;
+    }
+    diag.report_once("depthfilter", base::Severity::Warning, base::Code::Unimplement, {},
+                     "Hider: depthfilter \"" + name +
+                         "\" is not known (min, max, average are); using min");
+    return DepthFilter::Min;
+}
+
+FilmSettings film_settings(const rib::Options& options, base::Diag& diag) {
+    FilmSettings s;
+    const auto it = options.user.find("limits:bucketsize");
+    if (it != options.user.end() && it->second.ints.size() >= 2) {
+        s.bucket_x = std::clamp(it->second.ints[0], min_bucket_px, max_bucket_px);
+        s.bucket_y = std::clamp(it->second.ints[1], min_bucket_px, max_bucket_px);
+    }
+    s.depth = depth_filter(options, diag);
+    return s;
+}
+
+// --- buckets
+// ----------------------------------------------------------------------------------------------------
+
+struct Film::Bucket {
+    PixelRange output; // pixels it computes
+    PixelRange owned;  // pixels whose samples it holds: output and what lies beyond the border
+    SampleBuffer samples;
+    std::size_t missing = 0; // buckets of the neighbourhood without samples yet
+    std::size_t users = 0;   // buckets of the neighbourhood not filtered yet
+};
+
+std::unique_ptr<Film> Film::create(const Raster& raster, const Sampler& sampler,
+                                   const FilterWeights& weights, const FilmSettings& settings,
+                                   base::Diag& diag) {
+    const std::size_t planes =
+        static_cast<std::size_t>(Plane::Count) + static_cast<std::size_t>(settings.num_extra);
+    const std::size_t bytes = raster.crop.area() * planes * sizeof(float);
+    if (raster.crop.area() <= max_pixels && bytes < physical_bytes()) {
+        try {
+            return std::unique_ptr<Film>(new Film(raster, sampler, weights, settings));
+        } catch (const std::bad_alloc&) { // reported below
+        }
+    }
+    diag.report(base::Severity::Severe, base::Code::NoMem, {},
+                "not enough memory for a picture of " + std::to_string(raster.crop.width()) +
+                    " by " + std::to_string(raster.crop.height()) + " pixels (" +
+                    std::to_string(bytes >> 20) + " MB); nothing was rendered");
+    return nullptr;
+}
+
+Film::Film(const Raster& raster, const Sampler& sampler, const FilterWeights& weights,
+           const FilmSettings& settings)
+    : sampler_(sampler), weights_(weights), settings_(settings) {
+    // Many samples per pixel make buckets smaller, so that their memory stays bounded.
+    const auto samples = [&] {
+        return static_cast<std::size_t>(settings_.bucket_x) *
+               static_cast<std::size_t>(settings_.bucket_y) *
+               static_cast<std::size_t>(sampler.per_pixel());
+    };
+    while (samples() > max_bucket_samples) {
+        int& larger =
+            settings_.bucket_x > settings_.bucket_y ? settings_.bucket_x : settings_.bucket_y;
+        larger = (larger + 1) / 2;
+    }
+    image_.pixels = raster.crop;
+    for (auto& plane : image_.planes) {
+        plane.assign(raster.crop.area(), 0.0f);
+    }
+    std::ranges::fill(image_.plane(Plane::Z), uncovered_z);
+    image_.extra.assign(static_cast<std::size_t>(settings.num_extra),
+                        std::vector<float>(raster.crop.area(), 0.0f));
+    near_x_ = (weights.reach_x() + settings_.bucket_x - 1) / settings_.bucket_x;
+    near_y_ = (weights.reach_y() + settings_.bucket_y - 1) / settings_.bucket_y;
+    make_buckets(raster.rendered());
+}
+
+Film::~Film() = default;
+
+namespace {
+
+// Cuts begin..end at the multiples of size.
+std::vector<int> cuts(int begin, int end, int size) {
+    std::vector<int> at = {begin};
+    for (int next = (begin / size + 1) * size; next < end; next += size) {
+        at.push_back(next);
+    }
+    at.push_back(end);
+    return at;
+}
+
+} // namespace
+
+void Film::make_buckets(const PixelRange& rendered) {
+    if (rendered.empty()) {
+        return;
+    }
+    const auto xs = cuts(rendered.x0, rendered.x1, settings_.bucket_x);
+    const auto ys = cuts(rendered.y0, rendered.y1, settings_.bucket_y);
+    columns_ = static_cast<int>(xs.size()) - 1;
+    rows_ = static_cast<int>(ys.size()) - 1;
+    for (std::size_t j = 0; j + 1 < ys.size(); ++j) {
+        for (std::size_t i = 0; i + 1 < xs.size(); ++i) {
+            Bucket b;
+            b.output = {xs[i], ys[j], xs[i + 1], ys[j + 1]};
+            b.owned = b.output;
+            b.owned.x0 -= i == 0 ? weights_.reach_x() : 0;
+            b.owned.y0 -= j == 0 ? weights_.reach_y() : 0;
+            b.owned.x1 += i + 2 == xs.size() ? weights_.reach_x() : 0;
+            b.owned.y1 += j + 2 == ys.size() ? weights_.reach_y() : 0;
+            buckets_.push_back(std::move(b));
+        }
+    }
+    for (std::size_t i = 0; i < buckets_.size(); ++i) {
+        buckets_[i].missing = buckets_[i].users = neighbours(i).size();
+    }
+}
+
+// The buckets whose samples this one needs, itself included; the relation is symmetric.
+std::vector<std::size_t> Film::neighbours(std::size_t bucket) const {
+    const int column = static_cast<int>(bucket) % columns_,
+              row = static_cast<int>(bucket) / columns_;
+    std::vector<std::size_t> out;
+    for (int j = std::max(row - near_y_, 0); j <= std::min(row + near_y_, rows_ - 1); ++j) {
+        for (int i = std::max(column - near_x_, 0); i <= std::min(column + near_x_, columns_ - 1);
+             ++i) {
+            out.push_back(static_cast<std::size_t>(j * columns_ + i));
+        }
+    }
+    return out;
+}
+
+std::size_t Film::num_buckets() const {
+    return buckets_.size();
+}
+
+PixelRange Film::sample_pixels(std::size_t bucket) const {
+    return buckets_[bucket].owned;
+}
+
+std::size_t Film::peak_bytes() const {
+    const std::lock_guard lock(mutex_);
+    return bytes_peak_;
+}
+
+bool Film::complete() const {
+    const std::lock_guard lock(mutex_);
+    return num_done_ == buckets_.size();
+}
+
+// --- samples
+// ----------------------------------------------------------------------------------------------------
+
+SampleBuffer Film::buffer(std::size_t bucket) {
+    SampleBuffer out;
+    {
+        const std::lock_guard lock(mutex_);
+        if (!pool_.empty()) {
+            out = std::move(pool_.back());
+            pool_.pop_back();
+        }
+    }
+    out.pixels = buckets_[bucket].owned;
+    out.num_extra = settings_.num_extra;
+    const std::size_t n = out.pixels.area() * static_cast<std::size_t>(sampler_.per_pixel());
+    out.samples.assign(n, Sample{});
+    out.z.assign(n, uncovered_z);
+    out.extra.assign(n * static_cast<std::size_t>(settings_.num_extra), 0.0f);
+    return out;
+}
+
+namespace {
+
+// Replaces what is not finite; returns how many samples were.
+std::uint64_t sanitise(SampleBuffer& buffer) {
+    std::uint64_t bad = 0;
+    for (std::size_t i = 0; i < buffer.samples.size(); ++i) {
+        if (!finite(buffer.samples[i])) {
+            buffer.samples[i] = Sample{};
+            ++bad;
+        }
+        if (std::isnan(buffer.z[i])) {
+            buffer.z[i] = uncovered_z;
+        }
+    }
+    for (float& value : buffer.extra) {
+        value = std::isfinite(value) ? value : 0;
+    }
+    return bad;
+}
+
+std::size_t bytes_of(const SampleBuffer& b) {
+    return b.samples.size() * sizeof(Sample) + (b.z.size() + b.extra.size()) * sizeof(float);
+}
+
+} // namespace
+
+void Film::submit(std::size_t bucket, SampleBuffer&& samples) {
+    assert(samples.pixels == buckets_[bucket].owned);
+    num_bad_ += sanitise(samples);
+    const auto near = neighbours(bucket);
+    std::vector<std::size_t> ready;
+    {
+        const std::lock_guard lock(mutex_);
+        bytes_held_ += bytes_of(samples);
+        bytes_peak_ = std::max(bytes_peak_, bytes_held_);
+        buckets_[bucket].samples = std::move(samples);
+        for (const std::size_t n : near) {
+            if (--buckets_[n].missing == 0) {
+                ready.push_back(n);
+            }
+        }
+    }
+    for (const std::size_t n : ready) {
+        filter_bucket(n);
+        release(n);
+    }
+}
+
+// One bucket less needs the samples of its neighbourhood.
+void Film::release(std::size_t bucket) {
+    const std::lock_guard lock(mutex_);
+    ++num_done_;
+    for (const std::size_t n : neighbours(bucket)) {
+        if (--buckets_[n].users == 0) {
+            bytes_held_ -= bytes_of(buckets_[n].samples);
+            pool_.push_back(std::move(buckets_[n].samples));
+            buckets_[n].samples = {};
+        }
+    }
+}
+
+// --- filtering
+// --------------------------------------------------------------------------------------------------
+
+// The pixels around a bucket, with their samples: one lookup per pixel instead of one per pixel and
+// neighbour.
+struct Film::SourcePixel {
+    const SampleBuffer* buffer = nullptr;
+    std::size_t first = 0; // sample
+    std::size_t pattern = 0;
+};
+
+struct Film::Sources {
+    PixelRange pixels;
+    std::vector<SourcePixel> table;
+
+    [[nodiscard]] std::size_t index(int x, int y) const {
+        return static_cast<std::size_t>(y - pixels.y0) * static_cast<std::size_t>(pixels.width()) +
+               static_cast<std::size_t>(x - pixels.x0);
+    }
+    [[nodiscard]] const SourcePixel& at(int x, int y) const { return table[index(x, y)]; }
+};
+
+Film::Sources Film::sources(std::size_t bucket) const {
+    Sources out;
+    out.pixels = buckets_[bucket].output.grown(weights_.reach_x(), weights_.reach_y());
+    out.table.resize(out.pixels.area());
+    const auto per_pixel = static_cast<std::size_t>(sampler_.per_pixel());
+    for (const std::size_t n : neighbours(bucket)) {
+        const SampleBuffer& buffer = buckets_[n].samples;
+        const PixelRange common = buffer.pixels.intersected(out.pixels);
+        for (int y = common.y0; y < common.y1; ++y) {
+            for (int x = common.x0; x < common.x1; ++x) {
+                const std::size_t index = static_cast<std::size_t>(y - buffer.pixels.y0) *
+                                              static_cast<std::size_t>(buffer.pixels.width()) +
+                                          static_cast<std::size_t>(x - buffer.pixels.x0);
+                out.table[out.index(x, y)] = {&buffer, index * per_pixel, sampler_.pattern(x, y)};
+            }
+        }
+    }
+    return out;
+}
+
+// Calls body(source, weights, first, last) for the samples of every neighbour, in the one order
+// there is.
+template <class Body>
+void Film::for_neighbours(const Sources& from, int x, int y, const Body& body) const {
+    std::size_t k = 0;
+    for (int dy = -weights_.reach_y(); dy <= weights_.reach_y(); ++dy) {
+        for (int dx = -weights_.reach_x(); dx <= weights_.reach_x(); ++dx, ++k) {
+            const SourcePixel& source = from.at(x + dx, y + dy);
+            const FilterWeights::Span span = weights_.span(source.pattern, k);
+            body(source, weights_.weights(source.pattern, k), span.first, span.last);
+        }
+    }
+}
+
+void Film::filter_bucket(std::size_t bucket) {
+    const Sources from = sources(bucket);
+    const PixelRange& out = buckets_[bucket].output;
+    for (int y = out.y0; y < out.y1; ++y) {
+        for (int x = out.x0; x < out.x1; ++x) {
+            filter_pixel(from, x, y);
+        }
+    }
+}
+
+void Film::filter_pixel(const Sources& from, int x, int y) {
+    Sum sum;
+    for_neighbours(from, x, y, [&](const SourcePixel& source, const float* w, int first, int last) {
+        const Sample* samples = source.buffer->samples.data() + source.first;
+        for (int s = first; s < last; ++s) {
+            sum.add(samples[s], w[s]);
+        }
+    });
+    const SourcePixel& own = from.at(x, y);
+    // A filter narrower than the spacing of samples, or one with negative lobes and few samples,
+    // may leave nothing to divide by: the pixel is then the plain mean of its own samples.
+    const bool plain = !(sum.high[2] >= weights_.least_sum());
+    if (plain) {
+        sum = {};
+        for (int s = 0; s < sampler_.per_pixel(); ++s) {
+            sum.add(own.buffer->samples[own.first + static_cast<std::size_t>(s)], 1);
+        }
+    }
+    const float total = sum.high[2];
+    const std::size_t at = static_cast<std::size_t>(y - image_.pixels.y0) *
+                               static_cast<std::size_t>(image_.pixels.width()) +
+                           static_cast<std::size_t>(x - image_.pixels.x0);
+    const float values[] = {sum.low[0] / total, sum.low[1] / total,  sum.low[2] / total,
+                            sum.low[3] / total, sum.high[0] / total, sum.high[1] / total};
+    for (std::size_t p = 0; p < 6; ++p) {
+        image_.planes[p][at] = values[p];
+    }
+    image_.plane(Plane::A)[at] = (values[3] + values[4] + values[5]) / 3;
+    image_.plane(Plane::Z)[at] = depth(own);
+    for (int c = 0; c < settings_.num_extra; ++c) {
+        image_.extra[static_cast<std::size_t>(c)][at] = extra_channel(from, x, y, c, plain);
+    }
+}
+
+// Of the pixel's own covered samples; ri.md 9: depth bypasses the filter.
+float Film::depth(const SourcePixel& own) const {
+    const float* z = own.buffer->z.data() + own.first;
+    const int n = sampler_.per_pixel();
+    if (settings_.depth == DepthFilter::Min) {
+        return *std::min_element(z, z + n);
+    }
+    double sum = 0;
+    float largest = -uncovered_z;
+    int covered = 0;
+    for (int s = 0; s < n; ++s) {
+        if (z[s] < uncovered_z) {
+            sum += static_cast<double>(z[s]);
+            largest = std::max(largest, z[s]);
+            ++covered;
+        }
+    }
+    if (covered == 0) {
+        return uncovered_z;
+    }
+    return settings_.depth == DepthFilter::Max ? largest : static_cast<float>(sum / covered);
+}
+
+float Film::extra_channel(const Sources& from, int x, int y, int channel, bool plain) const {
+    const auto stride = static_cast<std::size_t>(settings_.num_extra);
+    float sum = 0, total = 0;
+    const auto add = [&](const SourcePixel& source, int s, float weight) {
+        const std::size_t index = source.first + static_cast<std::size_t>(s);
+        sum += weight * source.buffer->extra[index * stride + static_cast<std::size_t>(channel)];
+        total += weight;
+    };
+    if (plain) {
+        for (int s = 0; s < sampler_.per_pixel(); ++s) {
+            add(from.at(x, y), s, 1);
+        }
+    } else {
+        for_neighbours(from, x, y,
+                       [&](const SourcePixel& source, const float* w, int first, int last) {
+                           for (int s = first; s < last; ++s) {
+                               add(source, s, w[s]);
+                           }
+                       });
+    }
+    return sum / total;
+}
+
+} // namespace trace

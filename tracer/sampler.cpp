@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracer/sampler.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+namespace trace {
+
+namespace {
+
+constexpr int max_per_pixel = 4096;
+// Positions of all patterns together: small enough to stay in the second-level cache with their
+// filter weights.
+constexpr int pattern_budget = 4096;
+constexpr int min_patterns = 16;
+constexpr float below_one = 0x1.fffffep-1f;
+
+// What a hash is for; different uses must not correlate.
+enum class Use : std::uint32_t { Position, Time, Lens, Seed };
+
+// A bijection of 32 bits with low bias (C. Wellons' "lowbias32" constants).
+std::uint32_t mix(std::uint32_t x) {
+    x = (x ^ (x >> 16)) * 0x7feb352dU;
+    x = (x ^ (x >> 15)) * 0x846ca68bU;
+    return x ^ (x >> 16);
+}
+
+std::uint32_t hash(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    return mix(a + 0x9e3779b9U * mix(b + 0x85ebca6bU * mix(c + 1)));
+}
+
+std::uint32_t pixel_hash(int px, int py, Use use) {
+    return hash(static_cast<std::uint32_t>(px), static_cast<std::uint32_t>(py),
+                static_cast<std::uint32_t>(use));
+}
+
+// The random numbers of one pattern of one table, in a fixed order.
+class Random {
+public:
+    Random(std::size_t pattern, Use use)
+        : key_(hash(static_cast<std::uint32_t>(pattern), static_cast<std::uint32_t>(use),
+                    0x7061747eU)) {}
+    float unit() { return static_cast<float>(next() >> 8) * 0x1p-24f; }
+    // Uniform in 0 .. n-1 for n far below 2^32.
+    std::uint32_t below(std::uint32_t n) {
+        return static_cast<std::uint32_t>((std::uint64_t{next()} * n) >> 32);
+    }
+
+private:
+    std::uint32_t next() { return hash(key_, counter_++, 0x6e657874U); }
+    std::uint32_t key_, counter_ = 0;
+};
+
+std::vector<std::uint32_t> permutation(std::size_t n, Random& random) {
+    std::vector<std::uint32_t> p(n);
+    std::iota(p.begin(), p.end(), 0U);
+    for (std::size_t i = n; i > 1; --i) {
+        std::swap(p[i - 1], p[random.below(static_cast<std::uint32_t>(i))]);
+    }
+    return p;
+}
+
+// One coordinate of a cell: cell i of n, sub-cell k of m, jittered there; pulled to the cell's
+// centre by 1 - jitter.
+float cell_position(int i, int n, std::uint32_t k, int m, float xi, float jitter) {
+    const double inside = (k + static_cast<double>(xi)) / m;
+    const double pulled = 0.5 + static_cast<double>(jitter) * (inside - 0.5);
+    return std::min(static_cast<float>((i + pulled) / n), below_one);
+}
+
+// Correlated multi-jittered points [Kensler13]: one point in each of nx*ny cells, one in each of
+// nx*ny columns and rows. The sub-column depends on the cell's row only, and the other way round,
+// which spreads neighbours.
+void multi_jitter(int nx, int ny, float jitter, Random& random, std::span<float> x,
+                  std::span<float> y) {
+    const auto sub_x = permutation(static_cast<std::size_t>(ny), random);
+    const auto sub_y = permutation(static_cast<std::size_t>(nx), random);
+    for (int j = 0; j < ny; ++j) {
+        for (int i = 0; i < nx; ++i) {
+            const auto s = static_cast<std::size_t>(j * nx + i);
+            x[s] =
+                cell_position(i, nx, sub_x[static_cast<std::size_t>(j)], ny, random.unit(), jitter);
+            y[s] =
+                cell_position(j, ny, sub_y[static_cast<std::size_t>(i)], nx, random.unit(), jitter);
+        }
+    }
+}
+
+// One time in each of n equal parts of [open, close], in random order.
+void stratified_times(float open, float close, Random& random, std::span<float> out) {
+    const auto order = permutation(out.size(), random);
+    for (std::size_t s = 0; s < out.size(); ++s) {
+        const float t =
+            (static_cast<float>(order[s]) + random.unit()) / static_cast<float>(out.size());
+        out[s] = std::clamp(open + t * (close - open), open, close);
+    }
+}
+
+// Multi-jittered lens points in random order, so that they do not follow the position in the pixel.
+void lens_points(const SamplerSettings& settings, Random& random, std::span<float> u,
+                 std::span<float> v) {
+    std::vector<float> x(u.size()), y(u.size());
+    multi_jitter(settings.nx, settings.ny, 1, random, x, y);
+    const auto order = permutation(u.size(), random);
+    for (std::size_t s = 0; s < u.size(); ++s) {
+        u[s] = x[order[s]];
+        v[s] = y[order[s]];
+    }
+}
+
+float hider_jitter(const rib::Options& options) {
+    const rib::Param* p = options.hider_params.find("jitter");
+    if (p == nullptr) {
+        return 1;
+    }
+    const float value = !p->floats.empty() ? p->floats[0]
+                        : !p->ints.empty() ? static_cast<float>(p->ints[0])
+                                           : 1.0f;
+    return std::isfinite(value) ? std::clamp(value, 0.0f, 1.0f) : 1.0f;
+}
+
+} // namespace
+
+SamplerSettings sampler_settings(const rib::Options& options, base::Diag& diag) {
+    SamplerSettings s;
+    s.nx = std::clamp(options.xsamples, 1, max_per_pixel);
+    s.ny = std::clamp(options.ysamples, 1, max_per_pixel);
+    while (s.nx * s.ny > max_per_pixel) {
+        int& larger = s.nx > s.ny ? s.nx : s.ny;
+        larger = (larger + 1) / 2;
+    }
+    if (s.nx < options.xsamples || s.ny < options.ysamples) {
+        diag.report(base::Severity::Warning, base::Code::Limit, {},
+                    "PixelSamples: at most " + std::to_string(max_per_pixel) +
+                        " samples per pixel; using " + std::to_string(s.nx) + " " +
+                        std::to_string(s.ny));
+    }
+    s.jitter = hider_jitter(options);
+    s.shutter_open = options.shutter_open;
+    s.shutter_close = std::max(options.shutter_open, options.shutter_close);
+    s.wants_lens = options.fstop < rib::ri_infinity && options.focal_length > 0;
+    return s;
+}
+
+Sampler::Sampler(const SamplerSettings& settings)
+    : settings_(settings), per_pixel_(settings.nx * settings.ny),
+      moving_(settings.shutter_close > settings.shutter_open) {
+    num_patterns_ = std::bit_floor(
+        static_cast<std::size_t>(std::max(pattern_budget / per_pixel_, min_patterns)));
+    pattern_mask_ = num_patterns_ - 1;
+    const auto n = static_cast<std::size_t>(per_pixel_);
+    x_.resize(num_patterns_ * n);
+    y_.resize(num_patterns_ * n);
+    time_.resize(moving_ ? num_patterns_ * n : 0);
+    lens_u_.resize(settings.wants_lens ? num_patterns_ * n : 0);
+    lens_v_.resize(lens_u_.size());
+    for (std::size_t p = 0; p < num_patterns_; ++p) {
+        Random position(p, Use::Position), time(p, Use::Time), lens(p, Use::Lens);
+        multi_jitter(settings.nx, settings.ny, settings.jitter, position,
+                     std::span(x_).subspan(p * n, n), std::span(y_).subspan(p * n, n));
+        if (moving_) {
+            stratified_times(settings.shutter_open, settings.shutter_close, time,
+                             std::span(time_).subspan(p * n, n));
+        }
+        if (settings.wants_lens) {
+            lens_points(settings, lens, std::span(lens_u_).subspan(p * n, n),
+                        std::span(lens_v_).subspan(p * n, n));
+        }
+    }
+}
+
+std::size_t Sampler::pattern(int px, int py) const {
+    return pixel_hash(px, py, Use::Position) & pattern_mask_;
+}
+
+std::span<const float> Sampler::slice(const std::vector<float>& table, std::size_t pattern) const {
+    const auto n = static_cast<std::size_t>(per_pixel_);
+    return std::span(table).subspan(pattern * n, n);
+}
+
+std::span<const float> Sampler::pattern_x(std::size_t pattern) const {
+    return slice(x_, pattern);
+}
+std::span<const float> Sampler::pattern_y(std::size_t pattern) const {
+    return slice(y_, pattern);
+}
+
+void Sampler::fill_pixel(int px, int py, std::size_t at, SampleBlock& out) const {
+    const auto n = static_cast<std::size_t>(per_pixel_);
+    const auto copy = [&](const std::vector<float>& table, std::size_t pattern,
+                          std::vector<float>& to) {
+        std::copy_n(table.data() + pattern * n, n, to.data() + at);
+    };
+    const std::size_t position = pattern(px, py);
+    copy(x_, position, out.x);
+    copy(y_, position, out.y);
+    if (moving_) {
+        copy(time_, pixel_hash(px, py, Use::Time) & pattern_mask_, out.time);
+    }
+    if (settings_.wants_lens) {
+        const std::size_t lens = pixel_hash(px, py, Use::Lens) & pattern_mask_;
+        copy(lens_u_, lens, out.lens_u);
+        copy(lens_v_, lens, out.lens_v);
+    }
+    const std::uint32_t seed = pixel_hash(px, py, Use::Seed);
+    std::fill_n(out.px.data() + at, n, px);
+    std::fill_n(out.py.data() + at, n, py);
+    for (std::size_t s = 0; s < n; ++s) {
+        out.seed[at + s] = mix(seed + 0x9e3779b9U * static_cast<std::uint32_t>(s));
+    }
+}
+
+void Sampler::fill(const PixelRange& pixels, SampleBlock& out) const {
+    out.pixels = pixels;
+    out.per_pixel = per_pixel_;
+    out.count = pixels.area() * static_cast<std::size_t>(per_pixel_);
+    const std::size_t padded = out.num_packets() * 8;
+    out.px.resize(padded);
+    out.py.resize(padded);
+    out.x.resize(padded);
+    out.y.resize(padded);
+    out.time.resize(padded);
+    out.seed.resize(padded);
+    out.lens_u.resize(settings_.wants_lens ? padded : 0);
+    out.lens_v.resize(out.lens_u.size());
+    if (!moving_) {
+        std::fill(out.time.begin(), out.time.end(), settings_.shutter_open);
+    }
+    std::size_t at = 0;
+    for (int py = pixels.y0; py < pixels.y1; ++py) {
+        for (int px = pixels.x0; px < pixels.x1; ++px) {
+            fill_pixel(px, py, at, out);
+            at += static_cast<std::size_t>(per_pixel_);
+        }
+    }
+    const auto pad = [&](auto& values) {
+        if (!values.empty() && out.count > 0) {
+            std::fill(values.begin() + static_cast<std::ptrdiff_t>(out.count), values.end(),
+                      values[out.count - 1]);
+        }
+    };
+    pad(out.px), pad(out.py), pad(out.x), pad(out.y), pad(out.time), pad(out.seed);
+    pad(out.lens_u), pad(out.lens_v);
+}
+
+} // namespace trace

@@ -14,15 +14,17 @@ struct Hit {
     std::uint32_t shape = no_id;    // index into World's shapes; no_id = missed
     std::uint32_t part = 0;         // triangle, sub-patch, segment ... within the shape
     std::uint32_t instance = no_id; // index into Scene::instances, or no_id
-    float u = 0, v = 0;             // on the part: barycentric (triangles) or local parameters of the true surface
-    float t = 0;                    // ray parameter; the direction is not normalised
-    float time = 0;                 // shutter time of the ray
+    float u = 0,
+          v = 0;    // on the part: barycentric (triangles) or local parameters of the true surface
+    float t = 0;    // ray parameter; the direction is not normalised
+    float time = 0; // shutter time of the ray
 
     [[nodiscard]] bool valid() const { return shape != no_id; }
 };
 static_assert(sizeof(Hit) <= 64);
 
-// Eight rays in camera space; planes so that they go to Embree as they are. tnear/tfar in units of the direction.
+// Eight rays in camera space; planes so that they go to Embree as they are. tnear/tfar in units of
+// the direction.
 struct alignas(32) RayPacket {
     static constexpr int size = 8;
     float ox[size], oy[size], oz[size];

@@ -70,7 +70,7 @@ public:
     void add_bilinear(const std::array<std::uint32_t, 4>& corners, double u, double v);
 
 private:
-    std::array<Entry, 32> inline_{};
+    std::array<Entry, 32> inline_; // the first count_ are set
     std::size_t count_ = 0;
     std::vector<Entry> overflow_; // rational surfaces of high order only
 };
@@ -103,9 +103,12 @@ struct TraceBuffer {
         std::uint32_t first_vertex, stride;
         std::uint16_t width, height; // vertices
     };
-    std::vector<float> xyz;                  // 3 per vertex
-    std::vector<std::uint32_t> triangles;    // 3 per triangle
-    std::span<const std::uint32_t> borrowed; // instead of triangles: indices that outlive the World
+    std::vector<float> xyz;               // 3 per vertex
+    std::vector<std::uint32_t> triangles; // 3 per triangle
+    // Instead of triangles, where may_borrow: indices that outlive the World. Only a buffer of its
+    // own lets them be.
+    std::span<const std::uint32_t> borrowed;
+    bool may_borrow = false;
     std::vector<Grid> grids;
 
     [[nodiscard]] std::uint32_t num_vertices() const {

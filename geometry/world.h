@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene as rays see it: bounded surfaces in camera space, Embree's hierarchies over them, and the one function
-// that turns hits into ShaderVariables. Immutable after build(); every const member may be called from any thread.
+// The scene as rays see it: bounded surfaces in camera space, Embree's hierarchies over them, and
+// the one function that turns hits into ShaderVariables. Immutable after build(); every const
+// member may be called from any thread.
 //
-// Camera space is Perigee's "current" space: everything that enters or leaves is in it. Transforms are composed
-// in double and rounded once; instances are stored about their own centre (design.md, section 6).
+// Camera space is Perigee's "current" space: everything that enters or leaves is in it. Transforms
+// are composed in double and rounded once; instances are stored about their own centre (design.md,
+// section 6).
 #pragma once
 
 #include "geometry/hit.h"
@@ -35,16 +37,19 @@ struct BuildOptions {
 
 // What a surface point belongs to, besides its position.
 struct Binding {
-    std::uint32_t attributes;       // index into Scene::attributes
-    std::uint32_t primitive;        // index into Scene::primitives, or into the object's
-    std::uint32_t object;           // index into Scene::objects, or no_id
-    std::uint32_t transform_key;    // equal for equal object spaces: the batching key of SL_FACT_object_space
+    std::uint32_t attributes; // index into Scene::attributes
+    std::uint32_t primitive;  // index into Scene::primitives, or into the object's
+    std::uint32_t object;     // index into Scene::objects, or no_id
+    std::uint32_t
+        transform_key; // equal for equal object spaces: the batching key of SL_FACT_object_space
 };
 
-// The incident side of a batch of hits: origins and directions of the rays that found them, camera space.
+// The incident side of a batch of hits: origins and directions of the rays that found them, camera
+// space.
 struct Incident {
     std::span<const float> ox, oy, oz, dx, dy, dz;
-    // Distance on the surface, perpendicular to the ray, to the next shading sample; per hit. For du and dv.
+    // Distance on the surface, perpendicular to the ray, to the next shading sample; per hit. For
+    // du and dv.
     std::span<const float> footprint;
 };
 
@@ -61,32 +66,38 @@ public:
                                         base::Diag& diag);
     virtual ~World() = default;
 
-    // Closest hit per active ray; hits[i].shape = no_id where nothing was hit. Sides, visibility bits applied.
+    // Closest hit per active ray; hits[i].shape = no_id where nothing was hit. Sides, visibility
+    // bits applied.
     virtual void intersect(const RayPacket& rays, Hit* hits) const = 0;
-    // The same for any number of rays that lie near each other (a bucket of camera rays); fastest path.
+    // The same for any number of rays that lie near each other (a bucket of camera rays); fastest
+    // path.
     virtual void intersect(std::span<const RayPacket> packets, Hit* hits) const = 0;
     // Bit i: something opaque lies on ray i between tnear and tfar.
     [[nodiscard]] virtual std::uint32_t occluded(const RayPacket& rays) const = 0;
 
     [[nodiscard]] virtual Binding binding(const Hit& hit) const = 0;
 
-    // Fills the variables in `needed` (bits of sl_variable that geometry owns: P N Ng I E dPdu dPdv u v du dv s t Cs
-    // Os time dPdtime) for hits.size() <= SL_BATCH_MAX points. Planes as in sl_abi.h; NULL pointers are skipped.
-    // If aux_u, aux_v are given, they receive the *differences* to the auxiliary points (design.md, section 5).
+    // Fills the variables in `needed` (bits of sl_variable that geometry owns: P N Ng I E dPdu dPdv
+    // u v du dv s t Cs Os time dPdtime) for hits.size() <= SL_BATCH_MAX points. Planes as in
+    // sl_abi.h; NULL pointers are skipped. If aux_u, aux_v are given, they receive the
+    // *differences* to the auxiliary points (design.md, section 5).
     virtual void fill(std::span<const Hit> hits, const Incident& incident, std::uint64_t needed,
                       std::uint32_t stride, const sl_points& out, const sl_points* aux_u,
                       const sl_points* aux_v) const = 0;
 
-    // A primitive variable that overrides a shader parameter, camera space for P, V, N. Finds it by name and
-    // type for the shape of this hit; nullptr if it has none.
-    [[nodiscard]] virtual const rib::Param* primitive_variable(const Hit& hit, std::string_view name) const = 0;
-    // Its value at the hits (all of one shape): planes of stride floats, array elements one after another.
+    // A primitive variable that overrides a shader parameter, camera space for P, V, N. Finds it by
+    // name and type for the shape of this hit; nullptr if it has none.
+    [[nodiscard]] virtual const rib::Param* primitive_variable(const Hit& hit,
+                                                               std::string_view name) const = 0;
+    // Its value at the hits (all of one shape): planes of stride floats, array elements one after
+    // another.
     virtual void fill_primitive_variable(std::span<const Hit> hits, std::string_view name,
                                          std::uint32_t stride, float* out) const = 0;
 
-    // Where a ray leaving the hit may start without meeting the surface again: P moved along Ng towards
-    // direction by a bound of the rounding errors of P. [pbrt4] 6.8; no global epsilon.
-    [[nodiscard]] virtual base::V3f spawn_origin(const Hit& hit, const base::V3f& direction) const = 0;
+    // Where a ray leaving the hit may start without meeting the surface again: P moved along Ng
+    // towards direction by a bound of the rounding errors of P. [pbrt4] 6.8; no global epsilon.
+    [[nodiscard]] virtual base::V3f spawn_origin(const Hit& hit,
+                                                 const base::V3f& direction) const = 0;
 
     // Object space of a hit, at a time: for named coordinate systems.
     [[nodiscard]] virtual base::Mat4 camera_from_object(const Hit& hit, float time) const = 0;

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "geometry/accel.h"
+
+#include "geometry/accel_level.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstring>
+#include <mutex>
+
+namespace geo {
+
+struct Accel::Impl {
+    RTCDevice device = nullptr;
+    View view;
+    embree::Level top;
+    std::deque<embree::Level> prototypes;
+    // By geomID in the top scene, from the first id behind top.geometries on.
+    struct Placed {
+        std::uint32_t prototype, instance;
+        Mat4 trace_from_cam;
+        RTCGeometry geometry;
+    };
+    std::vector<Placed> placed;
+    std::atomic<std::int64_t> embree_bytes{0};
+    std::mutex error_mutex;
+    std::string error;
+
+    ~Impl() {
+        for (const Placed& p : placed) {
+            rtcReleaseGeometry(p.geometry);
+        }
+        rtcReleaseScene(top.scene);
+        for (const embree::Level& level : prototypes) {
+            rtcReleaseScene(level.scene);
+        }
+        rtcReleaseDevice(device);
+    }
+
+    static void on_error(void* self, RTCError, const char* text) {
+        auto& impl = *static_cast<Impl*>(self);
+        const std::lock_guard lock(impl.error_mutex);
+        if (impl.error.empty()) {
+            impl.error = text ? text : "unknown error";
+        }
+    }
+    static bool on_memory(void* self, std::ptrdiff_t bytes, bool) {
+        static_cast<Impl*>(self)->embree_bytes += bytes;
+        return true;
+    }
+
+    void to_hit(const RTCRayHit8& q, int i, Hit& hit) const;
+    void refine(const embree::Geometry::Member& member, const Mat4* trace_from_cam,
+                const RTCRayHit8& q, int i, Hit& hit) const;
+};
+
+namespace {
+
+constexpr int lanes = RayPacket::size;
+
+// One int per lane, -1 = trace it: finite origin and direction, a direction at all, and an
+// interval.
+void valid_rays(const RayPacket& r, int* valid) {
+    for (int i = 0; i < lanes; ++i) {
+        // x - x is 0 for finite x and NaN otherwise.
+        const float o = r.ox[i] + r.oy[i] + r.oz[i], d = r.dx[i] + r.dy[i] + r.dz[i];
+        const bool finite = o - o == 0 && d - d == 0;
+        const bool moves = r.dx[i] != 0 || r.dy[i] != 0 || r.dz[i] != 0;
+        const bool interval = r.tnear[i] <= r.tfar[i] && r.tfar[i] >= 0;
+        valid[i] = finite && moves && interval && (r.active >> i & 1) ? -1 : 0;
+    }
+}
+
+void load_rays(const RayPacket& r, RTCRay8& q) {
+    static_assert(sizeof q.org_x == sizeof r.ox);
+    std::memcpy(q.org_x, r.ox, sizeof r.ox);
+    std::memcpy(q.org_y, r.oy, sizeof r.oy);
+    std::memcpy(q.org_z, r.oz, sizeof r.oz);
+    std::memcpy(q.dir_x, r.dx, sizeof r.dx);
+    std::memcpy(q.dir_y, r.dy, sizeof r.dy);
+    std::memcpy(q.dir_z, r.dz, sizeof r.dz);
+    std::memcpy(q.tfar, r.tfar, sizeof r.tfar);
+    std::memcpy(q.time, r.time, sizeof r.time);
+    std::memcpy(q.mask, r.mask, sizeof r.mask);
+    for (int i = 0; i < lanes; ++i) {
+        q.tnear[i] = std::max(r.tnear[i], 0.0f);
+        q.id[i] = static_cast<unsigned>(i);
+        q.flags[i] = 0;
+    }
+}
+
+void load_query(const RayPacket& r, RTCRayHit8& q) {
+    load_rays(r, q.ray);
+    std::fill_n(q.hit.geomID, lanes, RTC_INVALID_GEOMETRY_ID);
+    std::fill_n(q.hit.instID[0], lanes, RTC_INVALID_GEOMETRY_ID);
+}
+
+} // namespace
+
+Accel::Accel(int num_threads, const View& view) : impl_(std::make_unique<Impl>()) {
+    const std::string config =
+        num_threads > 0 ? "threads=" + std::to_string(num_threads) : std::string();
+    impl_->view = view;
+    impl_->device = rtcNewDevice(config.c_str());
+    rtcSetDeviceErrorFunction(impl_->device, Impl::on_error, impl_.get());
+    rtcSetDeviceMemoryMonitorFunction(impl_->device, Impl::on_memory, impl_.get());
+}
+
+Accel::~Accel() = default;
+
+std::uint32_t Accel::add_prototype(std::span<const TraceItem> items) {
+    embree::Level& level = impl_->prototypes.emplace_back();
+    embree::build_level(impl_->device, impl_->view, items, level);
+    rtcCommitScene(level.scene);
+    return static_cast<std::uint32_t>(impl_->prototypes.size() - 1);
+}
+
+void Accel::add_instance(std::uint32_t prototype, std::uint32_t instance,
+                         const Mat4& cam_from_trace) {
+    RTCGeometry g = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(g, impl_->prototypes[prototype].scene);
+    float m[12]; // columns of Embree's p' = M p: our rows
+    for (int i = 0; i < 4; ++i) {
+        for (int k = 0; k < 3; ++k) {
+            m[3 * i + k] = static_cast<float>(cam_from_trace.m[i][k]);
+        }
+    }
+    rtcSetGeometryTransform(g, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, m);
+    rtcSetGeometryMask(g, ~0u);
+    rtcCommitGeometry(g);
+    impl_->placed.push_back(
+        {prototype, instance, base::inverse(cam_from_trace).value_or(Mat4()), g});
+}
+
+void Accel::finish(std::span<const TraceItem> items) {
+    embree::build_level(impl_->device, impl_->view, items, impl_->top);
+    auto id = static_cast<unsigned>(impl_->top.geometries.size());
+    for (const Impl::Placed& p : impl_->placed) {
+        rtcAttachGeometryByID(impl_->top.scene, p.geometry, id++);
+    }
+    rtcCommitScene(impl_->top.scene);
+}
+
+void Accel::Impl::to_hit(const RTCRayHit8& q, int i, Hit& hit) const {
+    hit = Hit{};
+    hit.time = q.ray.time[i];
+    if (q.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) {
+        return;
+    }
+    const embree::Level* level = &top;
+    const Mat4* trace_from_cam = nullptr;
+    if (q.hit.instID[0][i] != RTC_INVALID_GEOMETRY_ID) {
+        const Placed& p = placed[q.hit.instID[0][i] - top.geometries.size()];
+        level = &prototypes[p.prototype];
+        trace_from_cam = &p.trace_from_cam;
+        hit.instance = p.instance;
+    }
+    const embree::Geometry& g = level->geometries[q.hit.geomID[i]];
+    const embree::Geometry::Member& member = g.member(q.hit.primID[i]);
+    hit.shape = member.shape;
+    hit.part = q.hit.primID[i] - member.first;
+    hit.u = q.hit.u[i];
+    hit.v = q.hit.v[i];
+    hit.t = q.ray.tfar[i];
+    if (g.refine) {
+        refine(member, trace_from_cam, q, i, hit);
+    }
+}
+
+void Accel::Impl::refine(const embree::Geometry::Member& member, const Mat4* trace_from_cam,
+                         const RTCRayHit8& q, int i, Hit& hit) const {
+    V3d o(q.ray.org_x[i], q.ray.org_y[i], q.ray.org_z[i]);
+    V3d d(q.ray.dir_x[i], q.ray.dir_y[i], q.ray.dir_z[i]);
+    if (trace_from_cam) {
+        o = point(*trace_from_cam, o);
+        d = vector(*trace_from_cam, d);
+    }
+    const ObjectRay ray{point(*member.object_from_trace, o), vector(*member.object_from_trace, d),
+                        q.ray.tnear[i], q.ray.tfar[i], 0};
+    LocalHit local{{hit.part, hit.u, hit.v}, hit.t};
+    member.surface->refine(ray, local);
+    hit.part = local.at.part;
+    hit.u = static_cast<float>(local.at.u);
+    hit.v = static_cast<float>(local.at.v);
+    hit.t = static_cast<float>(local.t);
+}
+
+void Accel::intersect(const RayPacket& rays, Hit* hits) const {
+    alignas(32) int valid[lanes];
+    RTCRayHit8 q;
+    RTCIntersectContext context;
+    valid_rays(rays, valid);
+    load_query(rays, q);
+    rtcInitIntersectContext(&context);
+    rtcIntersect8(valid, impl_->top.scene, &context, &q);
+    for (int i = 0; i < lanes; ++i) {
+        impl_->to_hit(q, i, hits[i]);
+    }
+}
+
+void Accel::intersect(std::span<const RayPacket> packets, Hit* hits) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    for (const RayPacket& rays : packets) {
+        alignas(32) int valid[lanes];
+        RTCRayHit8 q;
+        valid_rays(rays, valid);
+        load_query(rays, q);
+        rtcIntersect8(valid, impl_->top.scene, &context, &q);
+        for (int i = 0; i < lanes; ++i) {
+            impl_->to_hit(q, i, *hits++);
+        }
+    }
+}
+
+std::uint32_t Accel::occluded(const RayPacket& rays) const {
+    alignas(32) int valid[lanes];
+    RTCRay8 q;
+    RTCIntersectContext context;
+    valid_rays(rays, valid);
+    load_rays(rays, q);
+    rtcInitIntersectContext(&context);
+    rtcOccluded8(valid, impl_->top.scene, &context, &q);
+    std::uint32_t bits = 0;
+    for (int i = 0; i < lanes; ++i) {
+        bits |= (valid[i] == -1 && q.tfar[i] < 0 ? 1u : 0u) << i;
+    }
+    return bits;
+}
+
+AccelStats Accel::stats() const {
+    AccelStats s{impl_->top.triangles, impl_->top.analytic, impl_->top.grids, impl_->placed.size(),
+                 0};
+    s.bytes = static_cast<std::uint64_t>(std::max<std::int64_t>(impl_->embree_bytes.load(), 0)) +
+              impl_->top.bytes();
+    for (const embree::Level& level : impl_->prototypes) {
+        s.triangles += level.triangles;
+        s.analytic += level.analytic;
+        s.grids += level.grids;
+        s.bytes += level.bytes();
+    }
+    return s;
+}
+
+std::string Accel::error() const {
+    const std::lock_guard lock(impl_->error_mutex);
+    return impl_->error;
+}
+
+} // namespace geo

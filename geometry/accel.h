@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ray queries through Embree: the only part of the project that names it (accel.cpp,
+// accel_build.cpp). In: the surfaces of a level (the world, or one prototype), each with its
+// transform into the level's trace space. Out: hits that name shape, part, instance and local
+// parameters. Rays that are not finite never reach Embree, which does not check them itself in this
+// build.
+#pragma once
+
+#include "geometry/hit.h"
+#include "geometry/surface.h"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace geo {
+
+// One surface of a level.
+struct TraceItem {
+    std::uint32_t shape = no_id;
+    Surface* surface = nullptr;
+    Mat4 trace_from_object;
+    Mat4 object_from_trace;
+    std::uint32_t mask = 0;  // RayMask
+    int cull = 0;            // ObjectRay::cull
+    Mat4 parent_from_object; // parent: camera, or the object definition of a prototype
+    std::span<const Mat4> cam_from_parent; // every placement of the level
+    float shading_rate = 1;
+};
+
+struct AccelStats {
+    std::uint64_t triangles = 0, analytic = 0, grids = 0, instances = 0;
+    std::uint64_t bytes = 0;
+};
+
+class Accel {
+public:
+    explicit Accel(int num_threads, const View& view);
+    ~Accel();
+    Accel(const Accel&) = delete;
+    Accel& operator=(const Accel&) = delete;
+
+    // A level that instances can show; its trace space is its own.
+    std::uint32_t add_prototype(std::span<const TraceItem> items);
+    // instance: what Hit::instance will say.
+    void add_instance(std::uint32_t prototype, std::uint32_t instance, const Mat4& cam_from_trace);
+    // The world's own surfaces; call once, last. Queries are allowed afterwards, from any thread.
+    void finish(std::span<const TraceItem> items);
+
+    void intersect(const RayPacket& rays, Hit* hits) const;
+    void intersect(std::span<const RayPacket> packets, Hit* hits) const;
+    [[nodiscard]] std::uint32_t occluded(const RayPacket& rays) const;
+
+    [[nodiscard]] AccelStats stats() const;
+    // What Embree complained about, "" if nothing.
+    [[nodiscard]] std::string error() const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+} // namespace geo

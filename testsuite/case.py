@@ -47,9 +47,9 @@ class Case:
             "slc {case}" if self.path.endswith(".sl") else "render {case}"
         return list(self.per_run["run"].items()) or [("main", default)]
 
-    def exit_code(self, run):
+    def exit_codes(self, run):
         codes = self.per_run["exit"]
-        return int(codes.get(run, codes.get("main", "0")))
+        return {int(code) for code in codes.get(run, codes.get("main", "0")).split(" or ")}
 
     def timeout_seconds(self):
         return float(self.values.get("timeout", "60"))

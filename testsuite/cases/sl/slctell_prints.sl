@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// rule: slctell prints the shader's kind, name, parameters with class, type and default.
+// spec: design (command line)
+// run: slc -o slctell_prints.slo {case}
+// needs: slctell
+// run tell: slctell ../main/slctell_prints.slo
+// output: displacement.*slctell_prints
+// output: float.*Km.*0?\.25
+// output: string.*file.*mask
+// output: color.*tint
+displacement slctell_prints(float Km = .25; uniform string file = "mask"; varying color tint = color(1, .5, 0);)
+{
+    P += Km * comp(tint, 0) * normalize(N);
+}

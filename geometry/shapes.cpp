@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "geometry/shapes.h"
 
+#include "geometry/patch.h"
 #include "geometry/polygon.h"
 #include "geometry/revolution.h"
 
@@ -152,6 +153,16 @@ private:
         if (const auto* polygons = std::get_if<rib::Polygons>(&p.shape)) {
             return polygon_surface(p, *polygons);
         }
+        if (const auto* patches = std::get_if<rib::Patches>(&p.shape)) {
+            std::string why;
+            return patch_surface(
+                p, make_patches(*patches, scene_.attributes[p.attributes].basis, p.params, why),
+                why);
+        }
+        if (const auto* nupatch = std::get_if<rib::NuPatch>(&p.shape)) {
+            std::string why;
+            return patch_surface(p, make_nupatch(*nupatch, p.params, why), why);
+        }
         const std::string name = shape_name(p.shape);
         diag_.report_once("geo:" + name, Severity::Warning, Code::Unimplement, p.pos,
                           name + ": not drawn by this version");
@@ -164,6 +175,20 @@ private:
         if (!surface) {
             diag_.report(Severity::Error, Code::Range, p.pos,
                          std::string(quadric_name(quadric.kind)) + ": " + why + "; left out");
+        }
+        return surface;
+    }
+
+    std::unique_ptr<Surface> patch_surface(const rib::Primitive& p,
+                                           std::unique_ptr<Surface> surface,
+                                           const std::string& why) {
+        if (!surface) {
+            diag_.report(Severity::Error, Code::Consistency, p.pos,
+                         std::string(shape_name(p.shape)) + ": " + why + "; left out");
+        } else if (std::holds_alternative<rib::NuPatch>(p.shape) &&
+                   !scene_.attributes[p.attributes].trim->empty()) {
+            diag_.report_once("geo:trim", Severity::Warning, Code::Unimplement, p.pos,
+                              "TrimCurve: this version draws NuPatches untrimmed");
         }
         return surface;
     }

@@ -37,7 +37,7 @@ def check_markdown(root, path):
             top = name.split("/")[0]
             if "*" in name or top in GENERATED or not os.path.isdir(os.path.join(root, top)):
                 continue
-            if not os.path.exists(os.path.join(root, name)):
+            if not any(os.path.exists(os.path.join(root, base, name)) for base in ("", folder)):
                 yield f"{path}: {name} does not exist"
 
 

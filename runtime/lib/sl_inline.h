@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0
- * Operators and small built-in functions, one text for uniform values and lanes: included twice by sl_shader.h with
- * F I V M S the float, mask, triple, matrix and string types and FN(name) the prefix. No include guard on purpose.
- * Arithmetic on F is written with C operators; comparisons return I (0 or -1).
- * Semantics: reference/sl.md 1.4 (operators), 4.1, 4.3, 4.4; each edge case is named where it is decided.
+ * Operators and small built-in functions, one text for uniform values and lanes: included twice by
+ * sl_shader.h with F I V M S the float, mask, triple, matrix and string types and FN(name) the
+ * prefix. No include guard on purpose. Arithmetic on F is written with C operators; comparisons
+ * return I (0 or -1). Semantics: reference/sl.md 1.4 (operators), 4.1, 4.3, 4.4; each edge case is
+ * named where it is decided.
  */
 
-/* --- triples ------------------------------------------------------------------------------------------------------ */
+/* --- triples
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 SL_INLINE V FN(make_3)(F x, F y, F z) {
     V r;
@@ -39,7 +42,8 @@ SL_INLINE F FN(dot_3)(V a, V b) {
 SL_INLINE V FN(cross_3)(V a, V b) {
     return FN(make_3)(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }
-/* Relations of triples hold when they hold for all three components; ne_3 is the negation of eq_3. */
+/* Relations of triples hold when they hold for all three components; ne_3 is the negation of eq_3.
+ */
 SL_INLINE I FN(eq_3)(V a, V b) {
     return FN(eq_f)(a.x, b.x) & FN(eq_f)(a.y, b.y) & FN(eq_f)(a.z, b.z);
 }
@@ -57,7 +61,9 @@ SL_INLINE V FN(select_3)(I m, V a, V b) {
                       FN(select_f)(m, a.z, b.z));
 }
 
-/* --- matrices ----------------------------------------------------------------------------------------------------- */
+/* --- matrices
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 SL_INLINE M FN(f_to_m)(F x) { /* f on the diagonal */
     M r;
@@ -95,7 +101,9 @@ SL_INLINE I FN(ne_m)(M a, M b) {
     return ~FN(eq_m)(a, b);
 }
 
-/* --- mathematics -------------------------------------------------------------------------------------------------- */
+/* --- mathematics
+ * --------------------------------------------------------------------------------------------------
+ */
 
 SL_INLINE F FN(radians)(F deg) {
     return deg * 0.0174532925199432958f;
@@ -115,8 +123,7 @@ SL_INLINE F FN(ceil)(F x) {
 }
 SL_INLINE F FN(round)(F x) { /* floor(x + 1/2), except where the sum itself would round up */
     const F below = FN(floor)(x);
-    return FN(select_f)(FN(lt_f)(x - below, FN(spread_f)(0.5f)), below,
-                        below + FN(spread_f)(1));
+    return FN(select_f)(FN(lt_f)(x - below, FN(spread_f)(0.5f)), below, below + FN(spread_f)(1));
 }
 SL_INLINE F FN(sqrt)(F x) { /* 0 for x < 0 */
     const F zero = FN(spread_f)(0);
@@ -138,10 +145,10 @@ SL_INLINE F FN(mod)(F a, F b) { /* in [0,b) for b > 0; b = 0: 0 */
     return FN(select_f)(none, zero, r);
 }
 SL_INLINE F FN(min_f)(F a, F b) {
-    return FN(select_f)(FN(lt_f)(b, a), b, a);
+    return FN(lesser_f)(b, a);
 }
 SL_INLINE F FN(max_f)(F a, F b) {
-    return FN(select_f)(FN(lt_f)(a, b), b, a);
+    return FN(greater_f)(b, a);
 }
 SL_INLINE V FN(min_3)(V a, V b) {
     return FN(make_3)(FN(min_f)(a.x, b.x), FN(min_f)(a.y, b.y), FN(min_f)(a.z, b.z));
@@ -175,14 +182,9 @@ SL_INLINE F FN(smoothstep)(F lo, F hi, F x) {
     const F t = (x - lo) / FN(select_f)(below | above, one, hi - lo);
     return FN(select_f)(below, zero, FN(select_f)(above, one, t * t * (3.0f - 2.0f * t)));
 }
-SL_INLINE F FN(filterstep_box_)(F edge, F x0, F x1) { /* x0 <= x1 */
-    const I thin = FN(le_f)(x1, x0);
-    const F w = FN(select_f)(thin, FN(spread_f)(1), x1 - x0);
-    return FN(select_f)(thin, FN(step)(edge, x1),
-                        FN(clamp_f)((x1 - edge) / w, FN(spread_f)(0), FN(spread_f)(1)));
-}
-
-/* --- components --------------------------------------------------------------------------------------------------- */
+/* --- components
+ * ---------------------------------------------------------------------------------------------------
+ */
 
 SL_INLINE F FN(xcomp)(V a) {
     return a.x;
@@ -193,13 +195,13 @@ SL_INLINE F FN(ycomp)(V a) {
 SL_INLINE F FN(zcomp)(V a) {
     return a.z;
 }
-SL_INLINE void FN(setxcomp)(V *a, F x) {
+SL_INLINE void FN(setxcomp)(V* a, F x) {
     a->x = x;
 }
-SL_INLINE void FN(setycomp)(V *a, F y) {
+SL_INLINE void FN(setycomp)(V* a, F y) {
     a->y = y;
 }
-SL_INLINE void FN(setzcomp)(V *a, F z) {
+SL_INLINE void FN(setzcomp)(V* a, F z) {
     a->z = z;
 }
 /* SL index to 0 .. n-1: truncated toward zero, clamped; NaN: 0. */
@@ -213,7 +215,7 @@ SL_INLINE F FN(comp_3)(V a, F i) {
     return FN(select_f)(FN(eq_i)(k, FN(spread_i)(0)), a.x,
                         FN(select_f)(FN(eq_i)(k, FN(spread_i)(1)), a.y, a.z));
 }
-SL_INLINE void FN(setcomp_3)(V *a, F i, F x) {
+SL_INLINE void FN(setcomp_3)(V* a, F i, F x) {
     const I k = FN(index)(i, 3);
     a->x = FN(select_f)(FN(eq_i)(k, FN(spread_i)(0)), x, a->x);
     a->y = FN(select_f)(FN(eq_i)(k, FN(spread_i)(1)), x, a->y);
@@ -223,7 +225,9 @@ SL_INLINE F FN(arraylength)(int n) {
     return FN(spread_f)((float)n);
 }
 
-/* --- geometry ----------------------------------------------------------------------------------------------------- */
+/* --- geometry
+ * -----------------------------------------------------------------------------------------------------
+ */
 
 SL_INLINE F FN(length)(V a) {
     return FN(root_f)(FN(dot_3)(a, a));
@@ -231,7 +235,8 @@ SL_INLINE F FN(length)(V a) {
 SL_INLINE F FN(distance)(V a, V b) {
     return FN(length)(FN(sub_3)(a, b));
 }
-/* Zero stays zero. Squares that leave the range of float (|a| below 1e-18 or above 1e18) are scaled first. */
+/* Zero stays zero. Squares that leave the range of float (|a| below 1e-18 or above 1e18) are scaled
+ * first. */
 SL_INLINE V FN(normalize)(V a) {
     const F zero = FN(spread_f)(0), one = FN(spread_f)(1);
     const F big = FN(max_f)(FN(abs)(a.x), FN(max_f)(FN(abs)(a.y), FN(abs)(a.z)));
@@ -247,7 +252,8 @@ SL_INLINE V FN(normalize)(V a) {
 SL_INLINE V FN(reflect)(V i, V n) {
     return FN(sub_3)(i, FN(scale_3)(n, 2.0f * FN(dot_3)(i, n)));
 }
-/* (I.Nref <= 0 ? 1 : -1) (N.Nref >= 0 ? 1 : -1) N: never zero, and right for a bumped N tilted beyond 90 degrees. */
+/* (I.Nref <= 0 ? 1 : -1) (N.Nref >= 0 ? 1 : -1) N: never zero, and right for a bumped N tilted
+ * beyond 90 degrees. */
 SL_INLINE V FN(faceforward_ref)(V n, V i, V nref) {
     const I back = FN(lt_f)(FN(spread_f)(0), FN(dot_3)(i, nref));
     const I turned = FN(lt_f)(FN(dot_3)(n, nref), FN(spread_f)(0));

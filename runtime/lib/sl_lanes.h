@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0
  * Value types of shader code and the few operations on them that depend on compiler and processor.
- * Everything else is written with these (design.md 4: no system intrinsics, they cost 350 ms of compile time).
- * Results are the same bits at every width: all operations here are exact or correctly rounded.
+ * Everything else is written with these (design.md 4: no system intrinsics, they cost 350 ms of
+ * compile time). Results are the same bits at every width: all operations here are exact or
+ * correctly rounded.
  */
 #ifndef PERIGEE_SL_LANES_H
 #define PERIGEE_SL_LANES_H
@@ -14,6 +15,11 @@
 #endif
 
 #define SL_INLINE static inline __attribute__((always_inline, unused))
+
+#define SL_TEXT_(x) #x
+#define SL_TEXT(x)  SL_TEXT_(x)
+/* Symbols carry the width (slv_sin_8), so that both archives can serve one shared object. */
+#define SL_SYMBOL(name) __asm__(#name "_" SL_TEXT(SL_LANES)) __attribute__((visibility("hidden")))
 
 typedef float slf __attribute__((vector_size(SL_LANES * 4)));
 typedef int32_t sli __attribute__((vector_size(SL_LANES * 4)));
@@ -35,16 +41,19 @@ typedef struct sls {
     sl_string s[SL_LANES];
 } sls;
 
-/* A typed reference, for printf, format, options and X outputs. data: array_length (or one) consecutive values of the
- * type above: float, slu3, slum, sl_string, or with `varying` slf, slv, slm, sls. */
+/* A typed reference, for printf, format, options and X outputs. data: array_length (or one)
+ * consecutive values of the type above: float, slu3, slum, sl_string, or with `varying` slf, slv,
+ * slm, sls. */
 typedef struct sl_value {
     int32_t type; /* sl_type */
     int32_t varying;
     int32_t array_length; /* 0: not an array */
-    void *data;
+    void* data;
 } sl_value;
 
-/* --- conversions ------------------------------------------------------------------------------------------------- */
+/* --- conversions
+ * -------------------------------------------------------------------------------------------------
+ */
 
 SL_INLINE slf slv_spread_f(float x) {
     return x - (slf){0};
@@ -88,7 +97,8 @@ SL_INLINE float slu_f_of_bits(int bits) {
     return x;
 }
 
-/* --- comparisons: 0 and -1 in both worlds, so that & | ~ work on them --------------------------------------------- */
+/* --- comparisons: 0 and -1 in both worlds, so that & | ~ work on them
+ * --------------------------------------------- */
 
 SL_INLINE sli slv_lt_f(slf a, slf b) {
     return a < b;
@@ -121,7 +131,8 @@ SL_INLINE int slu_eq_i(int a, int b) {
     return -(a == b);
 }
 
-/* --- selection: m ? a : b ----------------------------------------------------------------------------------------- */
+/* --- selection: m ? a : b
+ * ----------------------------------------------------------------------------------------- */
 
 SL_INLINE sli slv_select_i(sli m, sli a, sli b) {
     return (a & m) | (b & ~m);
@@ -140,7 +151,42 @@ SL_INLINE float slu_select_f(int m, float a, float b) {
     return m ? a : b;
 }
 
-/* --- masks -------------------------------------------------------------------------------------------------------- */
+/* By the sign bit of m: negative ? a : b. */
+SL_INLINE slf slv_select_sign_f(sli m, slf a, slf b) {
+#if SL_LANES == 8
+    return __builtin_ia32_blendvps256(b, a, (slf)m);
+#else
+    return slv_select_f(m >> 31, a, b);
+#endif
+}
+SL_INLINE float slu_select_sign_f(int m, float a, float b) {
+    return m < 0 ? a : b;
+}
+/* a < b ? a : b and a > b ? a : b; b where either is NaN. */
+SL_INLINE slf slv_lesser_f(slf a, slf b) {
+#if SL_LANES == 8
+    return __builtin_ia32_minps256(a, b);
+#else
+    return __builtin_ia32_minps(a, b);
+#endif
+}
+SL_INLINE slf slv_greater_f(slf a, slf b) {
+#if SL_LANES == 8
+    return __builtin_ia32_maxps256(a, b);
+#else
+    return __builtin_ia32_maxps(a, b);
+#endif
+}
+SL_INLINE float slu_lesser_f(float a, float b) {
+    return a < b ? a : b;
+}
+SL_INLINE float slu_greater_f(float a, float b) {
+    return a > b ? a : b;
+}
+
+/* --- masks
+ * --------------------------------------------------------------------------------------------------------
+ */
 
 /* One bit per lane, lane 0 lowest: what services take. */
 SL_INLINE uint32_t sl_bits(sli mask) {
@@ -178,7 +224,43 @@ SL_INLINE slf slv_f_of_mask(sli m) {
     return (slf)(m & 0x3f800000);
 }
 
-/* --- roots and rounding ------------------------------------------------------------------------------------------- */
+SL_INLINE int slv_any(sli mask) {
+    return sl_any(mask);
+}
+SL_INLINE int slu_any(int mask) {
+    return mask != 0;
+}
+
+/* --- integers modulo 2^32
+ * ----------------------------------------------------------------------------------------- */
+
+SL_INLINE sli slv_add_i(sli a, sli b) {
+    return (sli)((slw)a + (slw)b);
+}
+SL_INLINE int slu_add_i(int a, int b) {
+    return (int)((uint32_t)a + (uint32_t)b);
+}
+SL_INLINE sli slv_mul_i(sli a, uint32_t b) {
+    return (sli)((slw)a * b);
+}
+SL_INLINE int slu_mul_i(int a, uint32_t b) {
+    return (int)((uint32_t)a * b);
+}
+SL_INLINE sli slv_shl_i(sli a, int n) {
+    return (sli)((slw)a << n);
+}
+SL_INLINE int slu_shl_i(int a, int n) {
+    return (int)((uint32_t)a << n);
+}
+SL_INLINE sli slv_shr_i(sli a, int n) { /* zeros come in from the left */
+    return (sli)((slw)a >> n);
+}
+SL_INLINE int slu_shr_i(int a, int n) {
+    return (int)((uint32_t)a >> n);
+}
+
+/* --- roots and rounding
+ * ------------------------------------------------------------------------------------------- */
 
 SL_INLINE slf slv_root_f(slf x) { /* IEEE square root */
 #if SL_LANES == 8
@@ -191,7 +273,8 @@ SL_INLINE float slu_root_f(float x) {
     typedef float four __attribute__((vector_size(16)));
     return __builtin_ia32_sqrtps((four){x, 0, 0, 0})[0];
 }
-/* Largest integer not above x. Huge values, infinities and NaN are their own floor; the sign of zero stays. */
+/* Largest integer not above x. Huge values, infinities and NaN are their own floor; the sign of
+ * zero stays. */
 SL_INLINE slf slv_floor(slf x) {
 #if SL_LANES == 8
     return __builtin_ia32_roundps256(x, 1);

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0
- * Light loops: illuminance on the surface's side, illuminate and solar on the light's side (sl.md 5.4, 5.5).
+ * Light loops: illuminance on the surface's side, illuminate and solar on the light's side
+ * (sl.md 5.4, 5.5).
  *
  *   sl_light_loop loop;
  *   sl_lights_begin_cone(call, &loop, mask, P, axis, angle, category);     or sl_lights_begin
- *   for (sli lit; sl_lights_next(call, &loop, &lit);) { body with loop.L, loop.Cl, loop.Ol under mask `lit` }
+ *   for (sli lit; sl_lights_next(call, &loop, &lit);) { body with loop.L, loop.Cl, loop.Ol under
+ * mask `lit` }
  *
  * `break` in the body: loop.live &= ~lanes that left; `continue` needs nothing.
  */
@@ -11,24 +13,25 @@
 #define PERIGEE_SL_LIGHTS_H
 
 typedef struct sl_light_loop {
-    slv P;         /* points being lit */
-    slv axis;      /* with has_cone */
-    slf cosangle;  /* cosine of the cone's half angle; -2 and less: everything */
-    sli live;      /* lanes still in the loop */
+    slv P;        /* points being lit */
+    slv axis;     /* with has_cone */
+    slf cosangle; /* cosine of the cone's half angle; -2 and less: everything */
+    sli live;     /* lanes still in the loop */
     sl_string category;
     int32_t has_cone;
     int32_t index; /* light to ask next */
     int32_t count; /* lights of the batch */
     /* the sample at hand */
-    slv L;         /* from P towards the light */
+    slv L; /* from P towards the light */
     slv Cl, Ol;
     slf nondiffuse, nonspecular; /* the light's __nondiffuse and __nonspecular */
 } sl_light_loop;
 
-/* The next light sample that reaches any lane: 1 and the lanes reached; 0 when there is none left. */
-int sl_lights_next(const sl_call *call, sl_light_loop *loop, sli *lit) SL_SYMBOL(sl_lights_next);
+/* The next light sample that reaches any lane: 1 and the lanes reached; 0 when there is none left.
+ */
+int sl_lights_next(const sl_call* call, sl_light_loop* loop, sli* lit) SL_SYMBOL(sl_lights_next);
 
-SL_INLINE void sl_lights_begin(const sl_call *call, sl_light_loop *loop, sli mask, slv P,
+SL_INLINE void sl_lights_begin(const sl_call* call, sl_light_loop* loop, sli mask, slv P,
                                sl_string category) {
     loop->P = P;
     loop->axis = slv_f_to_3((slf){0});
@@ -40,14 +43,15 @@ SL_INLINE void sl_lights_begin(const sl_call *call, sl_light_loop *loop, sli mas
     loop->count = call->services->light_count(call->engine);
 }
 
-/* Cosine of a cone's half angle as the cone tests use it: exactly 0 at pi/2, and everything passes from pi on. */
+/* Cosine of a cone's half angle as the cone tests use it: exactly 0 at pi/2, and everything passes
+ * from pi on. */
 SL_INLINE slf slv_cone_cosine(slf angle) {
     const slf c = slv_cos(angle);
     const sli right = (slv_abs(angle - 1.57079632679489662f) < 1e-6f);
     return slv_select_f(angle >= 3.14159f, slv_spread_f(-2), slv_select_f(right, (slf){0}, c));
 }
 
-SL_INLINE void sl_lights_begin_cone(const sl_call *call, sl_light_loop *loop, sli mask, slv P,
+SL_INLINE void sl_lights_begin_cone(const sl_call* call, sl_light_loop* loop, sli mask, slv P,
                                     slv axis, slf angle, sl_string category) {
     sl_lights_begin(call, loop, mask, P, category);
     loop->axis = axis;
@@ -55,23 +59,24 @@ SL_INLINE void sl_lights_begin_cone(const sl_call *call, sl_light_loop *loop, sl
     loop->has_cone = 1;
 }
 
-/* --- the light's side; each returns the lanes whose body runs. In the other lanes the emitter sets Cl to 0. -------- */
+/* --- the light's side; each returns the lanes whose body runs. In the other lanes the emitter sets
+ * Cl to 0. -------- */
 
-SL_INLINE void sl_mark_lit(const sl_call *call, sli lit) {
+SL_INLINE void sl_mark_lit(const sl_call* call, sli lit) {
     if (call->batch->lit)
         call->batch->lit[call->first / SL_LANES] |= sl_bits(lit);
 }
 
 /* illuminate(from): L = Ps - from. */
-SL_INLINE sli sl_illuminate(const sl_call *call, sli mask, slv from, slv *L) {
+SL_INLINE sli sl_illuminate(const sl_call* call, sli mask, slv from, slv* L) {
     *L = slv_sub_3(slv_var_3(call, SL_VAR_Ps), from);
     sl_mark_lit(call, mask);
     return mask;
 }
 
 /* illuminate(from, axis, angle): lit where L lies within angle of axis. */
-SL_INLINE sli sl_illuminate_cone(const sl_call *call, sli mask, slv from, slv axis, slf angle,
-                                 slv *L) {
+SL_INLINE sli sl_illuminate_cone(const sl_call* call, sli mask, slv from, slv axis, slf angle,
+                                 slv* L) {
     *L = slv_sub_3(slv_var_3(call, SL_VAR_Ps), from);
     const slf cosine = slv_dot_3(slv_normalize(*L), slv_normalize(axis));
     const sli lit = mask & (cosine >= slv_cone_cosine(angle));
@@ -79,8 +84,9 @@ SL_INLINE sli sl_illuminate_cone(const sl_call *call, sli mask, slv from, slv ax
     return lit;
 }
 
-/* solar(axis, angle): L = axis. The disc of directions is not sampled; the engine may turn L within it. */
-SL_INLINE sli sl_solar_cone(const sl_call *call, sli mask, slv axis, slf angle, slv *L) {
+/* solar(axis, angle): L = axis. The disc of directions is not sampled; the engine may turn L within
+ * it. */
+SL_INLINE sli sl_solar_cone(const sl_call* call, sli mask, slv axis, slf angle, slv* L) {
     (void)angle;
     *L = axis;
     sl_mark_lit(call, mask);
@@ -88,7 +94,7 @@ SL_INLINE sli sl_solar_cone(const sl_call *call, sli mask, slv axis, slf angle, 
 }
 
 /* solar(): light from everywhere, represented by the direction that faces the surface; needs Ns. */
-SL_INLINE sli sl_solar(const sl_call *call, sli mask, slv *L) {
+SL_INLINE sli sl_solar(const sl_call* call, sli mask, slv* L) {
     *L = slv_neg_3(slv_normalize(slv_var_3(call, SL_VAR_Ns)));
     sl_mark_lit(call, mask);
     return mask;

@@ -1,29 +1,30 @@
 /* SPDX-License-Identifier: Apache-2.0
- * One execution of a shader on one packet (sl_call), and how values move between planes of a batch and lanes.
- * Plane bases are those of sl_points and of varying parameters: 64-byte aligned, stride floats per plane.
- * Stores touch live lanes only.
+ * One execution of a shader on one packet (sl_call), and how values move between planes of a batch
+ * and lanes. Plane bases are those of sl_points and of varying parameters: 64-byte aligned, stride
+ * floats per plane. Stores touch live lanes only.
  */
 #ifndef PERIGEE_SL_PACKET_H
 #define PERIGEE_SL_PACKET_H
 
-/* What an execution changes besides variables; its own in the call unless it must outlive a suspension. */
+/* What an execution changes besides variables; its own in the call unless it must outlive a
+ * suspension. */
 typedef struct sl_counters {
     sli random_lanes;        /* random() calls each lane has made */
     uint32_t random_uniform; /* random() calls for uniform targets */
 } sl_counters;
 
 typedef struct sl_call {
-    const sl_batch *batch; /* NULL while defaults are evaluated */
-    const sl_services *services;
-    void *engine;
-    sl_counters *counters;
+    const sl_batch* batch; /* NULL while defaults are evaluated */
+    const sl_services* services;
+    void* engine;
+    sl_counters* counters;
     uint32_t first; /* index in the batch of lane 0 */
     uint32_t count; /* lanes that are real points */
     sli live;       /* the same as a mask */
     sl_counters own_counters;
 } sl_call;
 
-SL_INLINE void sl_call_begin(sl_call *call, const sl_batch *batch, uint32_t first, uint32_t count) {
+SL_INLINE void sl_call_begin(sl_call* call, const sl_batch* batch, uint32_t first, uint32_t count) {
     call->batch = batch;
     call->services = batch->services;
     call->engine = batch->engine;
@@ -36,7 +37,7 @@ SL_INLINE void sl_call_begin(sl_call *call, const sl_batch *batch, uint32_t firs
 }
 
 /* For parameter defaults: only slu_ functions may be called. */
-SL_INLINE void sl_call_begin_init(sl_call *call, const sl_init *init) {
+SL_INLINE void sl_call_begin_init(sl_call* call, const sl_init* init) {
     call->batch = 0;
     call->services = init->services;
     call->engine = init->engine;
@@ -48,7 +49,8 @@ SL_INLINE void sl_call_begin_init(sl_call *call, const sl_init *init) {
     call->counters = &call->own_counters;
 }
 
-/* --- uniform to lanes --------------------------------------------------------------------------------------------- */
+/* --- uniform to lanes
+ * --------------------------------------------------------------------------------------------- */
 
 SL_INLINE slv slv_spread_3(slu3 a) {
     return slv_make_3(slv_spread_f(a.x), slv_spread_f(a.y), slv_spread_f(a.z));
@@ -81,7 +83,9 @@ SL_INLINE sl_string slv_lane_s(sls a, int lane) {
     return a.s[lane];
 }
 
-/* --- strings ------------------------------------------------------------------------------------------------------ */
+/* --- strings
+ * ------------------------------------------------------------------------------------------------------
+ */
 
 SL_INLINE int slu_eq_s(sl_string a, sl_string b) { /* interned: equal texts have equal pointers */
     return -(a == b);
@@ -107,121 +111,129 @@ SL_INLINE sl_string slu_select_s(int m, sl_string a, sl_string b) {
     return m ? a : b;
 }
 
-/* --- planes to lanes ---------------------------------------------------------------------------------------------- */
+/* --- planes to lanes
+ * ---------------------------------------------------------------------------------------------- */
 
-SL_INLINE slf sl_load_f(const sl_call *call, const float *base) {
-    return *(const slf *)(const void *)(base + call->first);
+SL_INLINE slf sl_load_f(const sl_call* call, const float* base) {
+    return *(const slf*)(const void*)(base + call->first);
 }
-SL_INLINE slv sl_load_3(const sl_call *call, const float *base) {
+SL_INLINE slv sl_load_3(const sl_call* call, const float* base) {
     const uint32_t stride = call->batch->stride;
     return slv_make_3(sl_load_f(call, base), sl_load_f(call, base + stride),
                       sl_load_f(call, base + 2 * stride));
 }
-SL_INLINE slm sl_load_m(const sl_call *call, const float *base) {
+SL_INLINE slm sl_load_m(const sl_call* call, const float* base) {
     slm r;
     for (int i = 0; i < 16; i++)
         r.m[i] = sl_load_f(call, base + i * call->batch->stride);
     return r;
 }
-SL_INLINE sls sl_load_s(const sl_call *call, const sl_string *base) {
+SL_INLINE sls sl_load_s(const sl_call* call, const sl_string* base) {
     sls r;
     for (uint32_t i = 0; i < SL_LANES; i++)
         r.s[i] = base[call->first + (i < call->count ? i : 0)];
     return r;
 }
-SL_INLINE void sl_store_f(const sl_call *call, sli mask, float *base, slf a) {
-    slf *p = (slf *)(void *)(base + call->first);
+SL_INLINE void sl_store_f(const sl_call* call, sli mask, float* base, slf a) {
+    slf* p = (slf*)(void*)(base + call->first);
     *p = slv_select_f(mask, a, *p);
 }
-SL_INLINE void sl_store_3(const sl_call *call, sli mask, float *base, slv a) {
+SL_INLINE void sl_store_3(const sl_call* call, sli mask, float* base, slv a) {
     const uint32_t stride = call->batch->stride;
     sl_store_f(call, mask, base, a.x);
     sl_store_f(call, mask, base + stride, a.y);
     sl_store_f(call, mask, base + 2 * stride, a.z);
 }
-SL_INLINE void sl_store_m(const sl_call *call, sli mask, float *base, slm a) {
+SL_INLINE void sl_store_m(const sl_call* call, sli mask, float* base, slm a) {
     for (int i = 0; i < 16; i++)
         sl_store_f(call, mask, base + i * call->batch->stride, a.m[i]);
 }
-SL_INLINE void sl_store_s(const sl_call *call, sli mask, sl_string *base, sls a) {
+SL_INLINE void sl_store_s(const sl_call* call, sli mask, sl_string* base, sls a) {
     for (uint32_t i = 0; i < call->count; i++)
         if (mask[i])
             base[call->first + i] = a.s[i];
 }
 /* Predefined variables: varying ones by planes, uniform ones (E, ncomps) by value. */
-SL_INLINE slf slv_var_f(const sl_call *call, int id) {
+SL_INLINE slf slv_var_f(const sl_call* call, int id) {
     return sl_load_f(call, call->batch->main->var[id]);
 }
-SL_INLINE slv slv_var_3(const sl_call *call, int id) {
+SL_INLINE slv slv_var_3(const sl_call* call, int id) {
     return sl_load_3(call, call->batch->main->var[id]);
 }
-SL_INLINE float slu_var_f(const sl_call *call, int id) {
+SL_INLINE float slu_var_f(const sl_call* call, int id) {
     return call->batch->main->var[id][0];
 }
-SL_INLINE slu3 slu_var_3(const sl_call *call, int id) {
-    const float *base = call->batch->main->var[id];
+SL_INLINE slu3 slu_var_3(const sl_call* call, int id) {
+    const float* base = call->batch->main->var[id];
     return slu_make_3(base[0], base[1], base[2]);
 }
 
-/* --- arrays of lanes with an index per lane; indices come from slv_index, so they are in range --------------------- */
+/* --- arrays of lanes with an index per lane; indices come from slv_index, so they are in range
+ * --------------------- */
 
-SL_INLINE slf slv_at_f(const slf *array, sli index) {
+SL_INLINE slf slv_at_f(const slf* array, sli index) {
     slf r = {0};
     for (int i = 0; i < SL_LANES; i++)
         r[i] = array[index[i]][i];
     return r;
 }
-SL_INLINE void slv_put_f(slf *array, sli index, sli mask, slf a) {
+SL_INLINE void slv_put_f(slf* array, sli index, sli mask, slf a) {
     for (int i = 0; i < SL_LANES; i++)
         if (mask[i])
             array[index[i]][i] = a[i];
 }
-SL_INLINE slv slv_at_3(const slv *array, sli index) {
+SL_INLINE slv slv_at_3(const slv* array, sli index) {
     slv r = {{0}, {0}, {0}};
     for (int i = 0; i < SL_LANES; i++) {
-        const slv *a = &array[index[i]];
+        const slv* a = &array[index[i]];
         r.x[i] = a->x[i], r.y[i] = a->y[i], r.z[i] = a->z[i];
     }
     return r;
 }
-SL_INLINE void slv_put_3(slv *array, sli index, sli mask, slv a) {
+SL_INLINE void slv_put_3(slv* array, sli index, sli mask, slv a) {
     for (int i = 0; i < SL_LANES; i++)
         if (mask[i]) {
-            slv *to = &array[index[i]];
+            slv* to = &array[index[i]];
             to->x[i] = a.x[i], to->y[i] = a.y[i], to->z[i] = a.z[i];
         }
 }
-SL_INLINE slm slv_at_m(const slm *array, sli index) {
+SL_INLINE slm slv_at_m(const slm* array, sli index) {
     slm r = array[0];
     for (int i = 0; i < SL_LANES; i++)
         for (int k = 0; k < 16; k++)
             r.m[k][i] = array[index[i]].m[k][i];
     return r;
 }
-SL_INLINE void slv_put_m(slm *array, sli index, sli mask, slm a) {
+SL_INLINE void slv_put_m(slm* array, sli index, sli mask, slm a) {
     for (int i = 0; i < SL_LANES; i++)
         for (int k = 0; k < 16 && mask[i]; k++)
             array[index[i]].m[k][i] = a.m[k][i];
 }
-SL_INLINE sls slv_at_s(const sls *array, sli index) {
+SL_INLINE sls slv_at_s(const sls* array, sli index) {
     sls r;
     for (int i = 0; i < SL_LANES; i++)
         r.s[i] = array[index[i]].s[i];
     return r;
 }
-SL_INLINE void slv_put_s(sls *array, sli index, sli mask, sls a) {
+SL_INLINE void slv_put_s(sls* array, sli index, sli mask, sls a) {
     for (int i = 0; i < SL_LANES; i++)
         if (mask[i])
             array[index[i]].s[i] = a.s[i];
 }
+SL_INLINE float slu_at_f(const float* array, int index) {
+    return array[index];
+}
+SL_INLINE slu3 slu_at_3(const slu3* array, int index) {
+    return array[index];
+}
 /* Uniform arrays with an index per lane. */
-SL_INLINE slf slu_at_lanes_f(const float *array, sli index) {
+SL_INLINE slf slu_at_lanes_f(const float* array, sli index) {
     slf r = {0};
     for (int i = 0; i < SL_LANES; i++)
         r[i] = array[index[i]];
     return r;
 }
-SL_INLINE slv slu_at_lanes_3(const slu3 *array, sli index) {
+SL_INLINE slv slu_at_lanes_3(const slu3* array, sli index) {
     slv r = {{0}, {0}, {0}};
     for (int i = 0; i < SL_LANES; i++) {
         const slu3 a = array[index[i]];
@@ -229,14 +241,14 @@ SL_INLINE slv slu_at_lanes_3(const slu3 *array, sli index) {
     }
     return r;
 }
-SL_INLINE slm slu_at_lanes_m(const slum *array, sli index) {
+SL_INLINE slm slu_at_lanes_m(const slum* array, sli index) {
     slm r = slv_spread_m(array[0]);
     for (int i = 0; i < SL_LANES; i++)
         for (int k = 0; k < 16; k++)
             r.m[k][i] = array[index[i]].m[k];
     return r;
 }
-SL_INLINE sls slu_at_lanes_s(const sl_string *array, sli index) {
+SL_INLINE sls slu_at_lanes_s(const sl_string* array, sli index) {
     sls r;
     for (int i = 0; i < SL_LANES; i++)
         r.s[i] = array[index[i]];

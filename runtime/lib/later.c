@@ -1,0 +1,73 @@
+/* SPDX-License-Identifier: Apache-2.0
+ * Rows of sl_builtins.def that later versions bring to life, for both worlds.
+ */
+#include "body.h"
+
+/* One message per function and shader; the engine drops repetitions. */
+static void report(const sl_call* call, const char* text) {
+    call->services->report(call->engine, 0, text);
+}
+
+static int is_named(sl_string name) {
+    return name && name[0];
+}
+
+static int same_text(const char* a, const char* b) {
+    while (*a && *a == *b)
+        a++, b++;
+    return *a == *b;
+}
+
+/* Value of the option "fill" among name/value pairs: what missing channels and unreadable maps
+ * give. */
+static const sl_value* find_option(const sl_value* values, int n, const char* name) {
+    for (int i = 0; i + 1 < n; i += 2)
+        if (values[i].type == SL_TYPE_string && !values[i].varying &&
+            same_text(*(const sl_string*)values[i].data, name))
+            return &values[i + 1];
+    return 0;
+}
+
+static float slu_fill_(const sl_value* values, int n) {
+    const sl_value* fill = find_option(values, n, "fill");
+    if (!fill || fill->type != SL_TYPE_float)
+        return 0;
+    return *(const float*)fill->data;
+}
+
+static slf slv_fill_(const sl_value* values, int n) {
+    const sl_value* fill = find_option(values, n, "fill");
+    if (!fill || fill->type != SL_TYPE_float)
+        return (slf){0};
+    return fill->varying ? *(const slf*)fill->data : slv_spread_f(*(const float*)fill->data);
+}
+
+/* Outputs under the mask, and normals that a batch may lack. */
+static void slu_put_masked_3(const sl_call* call, slu3* to, slu3 a) {
+    (void)call;
+    *to = a;
+}
+static void slu_put_masked_f(const sl_call* call, float* to, float a) {
+    (void)call;
+    *to = a;
+}
+static void slv_put_masked_3(const sl_call* call, sli mask, slv* to, slv a) {
+    (void)call;
+    *to = slv_select_3(mask, a, *to);
+}
+static void slv_put_masked_f(const sl_call* call, sli mask, slf* to, slf a) {
+    (void)call;
+    *to = slv_select_f(mask, a, *to);
+}
+static slv slv_normal_at_(const sl_call* call, sli mask, int id) {
+    (void)mask;
+    if (!call->batch || !call->batch->main->var[id])
+        return slv_f_to_3((slf){0});
+    return slv_var_3(call, id);
+}
+static slu3 slu_normal_at_(const sl_call* call, int id) {
+    return slv_lane_3(slv_normal_at_(call, call->live, id), sl_first_lane(call->live));
+}
+
+#define SL_BODY "later_body.h"
+#include "sl_both_worlds.h"

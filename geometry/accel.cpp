@@ -11,6 +11,25 @@
 
 namespace geo {
 
+namespace {
+
+constexpr float embree_limit = 1.8e18f;
+// Instances that would push the limit of rays below this are left out.
+constexpr double least_ray_limit = 1e9;
+
+// Coordinates up to which points stay within embree_limit when transformed.
+double source_limit(const Mat4& dst_from_src) {
+    double limit = embree_limit;
+    const auto& m = dst_from_src.m;
+    for (int k = 0; k < 3; ++k) {
+        const double row = std::fabs(m[0][k]) + std::fabs(m[1][k]) + std::fabs(m[2][k]);
+        limit = std::min(limit, (0.5 * embree_limit - std::fabs(m[3][k])) / std::max(row, 0.5));
+    }
+    return limit;
+}
+
+} // namespace
+
 struct Accel::Impl {
     RTCDevice device = nullptr;
     View view;
@@ -23,6 +42,9 @@ struct Accel::Impl {
         RTCGeometry geometry;
     };
     std::vector<Placed> placed;
+    // Largest coordinate of rays. Debian's Embree keeps its assertions: a ray beyond embree_limit,
+    // in the world or in the space of an instance it is carried into, would end the program.
+    float ray_limit = embree_limit;
     std::atomic<std::int64_t> embree_bytes{0};
     std::mutex error_mutex;
     std::string error;
@@ -59,16 +81,17 @@ namespace {
 
 constexpr int lanes = RayPacket::size;
 
-// One int per lane, -1 = trace it: finite origin and direction, a direction at all, and an
-// interval.
-void valid_rays(const RayPacket& r, int* valid) {
+// One int per lane, -1 = trace it: origin and direction finite and within limit, a direction at
+// all, an interval. Comparisons with NaN are false, so NaN fails.
+void valid_rays(const RayPacket& r, float limit, int* valid) {
     for (int i = 0; i < lanes; ++i) {
-        // x - x is 0 for finite x and NaN otherwise.
-        const float o = r.ox[i] + r.oy[i] + r.oz[i], d = r.dx[i] + r.dy[i] + r.dz[i];
-        const bool finite = o - o == 0 && d - d == 0;
+        const bool near = std::fabs(r.ox[i]) <= limit && std::fabs(r.oy[i]) <= limit &&
+                          std::fabs(r.oz[i]) <= limit;
+        const bool bounded = std::fabs(r.dx[i]) <= limit && std::fabs(r.dy[i]) <= limit &&
+                             std::fabs(r.dz[i]) <= limit;
         const bool moves = r.dx[i] != 0 || r.dy[i] != 0 || r.dz[i] != 0;
         const bool interval = r.tnear[i] <= r.tfar[i] && r.tfar[i] >= 0;
-        valid[i] = finite && moves && interval && (r.active >> i & 1) ? -1 : 0;
+        valid[i] = near && bounded && moves && interval && (r.active >> i & 1) ? -1 : 0;
     }
 }
 
@@ -116,8 +139,14 @@ std::uint32_t Accel::add_prototype(std::span<const TraceItem> items) {
     return static_cast<std::uint32_t>(impl_->prototypes.size() - 1);
 }
 
-void Accel::add_instance(std::uint32_t prototype, std::uint32_t instance,
+bool Accel::add_instance(std::uint32_t prototype, std::uint32_t instance,
                          const Mat4& cam_from_trace) {
+    const auto trace_from_cam = base::inverse(cam_from_trace);
+    const double limit = trace_from_cam ? source_limit(*trace_from_cam) : 0;
+    if (!(limit >= least_ray_limit) || !(source_limit(cam_from_trace) >= 1)) {
+        return false;
+    }
+    impl_->ray_limit = std::min(impl_->ray_limit, static_cast<float>(limit));
     RTCGeometry g = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_INSTANCE);
     rtcSetGeometryInstancedScene(g, impl_->prototypes[prototype].scene);
     float m[12]; // columns of Embree's p' = M p: our rows
@@ -129,8 +158,8 @@ void Accel::add_instance(std::uint32_t prototype, std::uint32_t instance,
     rtcSetGeometryTransform(g, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, m);
     rtcSetGeometryMask(g, ~0u);
     rtcCommitGeometry(g);
-    impl_->placed.push_back(
-        {prototype, instance, base::inverse(cam_from_trace).value_or(Mat4()), g});
+    impl_->placed.push_back({prototype, instance, *trace_from_cam, g});
+    return true;
 }
 
 void Accel::finish(std::span<const TraceItem> items) {
@@ -190,7 +219,7 @@ void Accel::intersect(const RayPacket& rays, Hit* hits) const {
     alignas(32) int valid[lanes];
     RTCRayHit8 q;
     RTCIntersectContext context;
-    valid_rays(rays, valid);
+    valid_rays(rays, impl_->ray_limit, valid);
     load_query(rays, q);
     rtcInitIntersectContext(&context);
     rtcIntersect8(valid, impl_->top.scene, &context, &q);
@@ -206,7 +235,7 @@ void Accel::intersect(std::span<const RayPacket> packets, Hit* hits) const {
     for (const RayPacket& rays : packets) {
         alignas(32) int valid[lanes];
         RTCRayHit8 q;
-        valid_rays(rays, valid);
+        valid_rays(rays, impl_->ray_limit, valid);
         load_query(rays, q);
         rtcIntersect8(valid, impl_->top.scene, &context, &q);
         for (int i = 0; i < lanes; ++i) {
@@ -219,7 +248,7 @@ std::uint32_t Accel::occluded(const RayPacket& rays) const {
     alignas(32) int valid[lanes];
     RTCRay8 q;
     RTCIntersectContext context;
-    valid_rays(rays, valid);
+    valid_rays(rays, impl_->ray_limit, valid);
     load_rays(rays, q);
     rtcInitIntersectContext(&context);
     rtcOccluded8(valid, impl_->top.scene, &context, &q);

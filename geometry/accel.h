@@ -45,7 +45,9 @@ public:
     // A level that instances can show; its trace space is its own.
     std::uint32_t add_prototype(std::span<const TraceItem> items);
     // instance: what Hit::instance will say.
-    void add_instance(std::uint32_t prototype, std::uint32_t instance, const Mat4& cam_from_trace);
+    // False, and nothing added, when its scale is beyond what Embree can carry rays through.
+    [[nodiscard]] bool add_instance(std::uint32_t prototype, std::uint32_t instance,
+                                    const Mat4& cam_from_trace);
     // The world's own surfaces; call once, last. Queries are allowed afterwards, from any thread.
     void finish(std::span<const TraceItem> items);
 

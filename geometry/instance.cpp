@@ -59,7 +59,7 @@ std::vector<TraceItem> trace_items(const ShapeTable& table, const ShapeGroup& gr
     return items;
 }
 
-void add_instances(ShapeTable& table, Accel& accel) {
+void add_instances(ShapeTable& table, Accel& accel, base::Diag& diag) {
     const std::vector<rib::Instance>& instances = table.scene->instances;
     std::vector<std::vector<Mat4>> placements(
         table.objects.size()); // dicing looks at all of an object's
@@ -85,9 +85,12 @@ void add_instances(ShapeTable& table, Accel& accel) {
         if (is_new) {
             it->second = accel.add_prototype(trace_items(table, group, i, placements[object]));
         }
-        accel.add_instance(it->second, i,
-                           table.instances[i].cam_from_definition.parent_from_object *
-                               Mat4::translate(group.centre));
+        const Mat4 cam_from_trace = table.instances[i].cam_from_definition.parent_from_object *
+                                    Mat4::translate(group.centre);
+        if (!accel.add_instance(it->second, i, cam_from_trace)) {
+            diag.report(base::Severity::Error, base::Code::Range, instances[i].pos,
+                        "ObjectInstance: its scale or place is beyond 1e9; left out");
+        }
     }
 }
 

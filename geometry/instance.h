@@ -10,7 +10,7 @@ namespace geo {
 // Puts every drawn instance into accel, with the prototypes they need, and sets ShapeGroup::centre
 // of their objects. Members whose visibility or sides differ between instances get one prototype
 // per combination.
-void add_instances(ShapeTable& table, Accel& accel);
+void add_instances(ShapeTable& table, Accel& accel, base::Diag& diag);
 
 // One level's items; trace space = the group's parent space moved by -centre.
 [[nodiscard]] std::vector<TraceItem> trace_items(const ShapeTable& table, const ShapeGroup& group,

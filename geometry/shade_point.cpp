@@ -426,8 +426,12 @@ V3f spawn_point(const ShapeTable& table, const Hit& hit, const V3f& direction) {
     }
     if (hit.instance != no_id) {
         const Placement& placement = table.instances[hit.instance].cam_from_definition;
-        const V3d centre = absolute(table.objects[shape.object].centre);
-        const V3d in_trace = spread(placement.object_from_parent, absolute(P), true) + centre;
+        // Embree's way into the trace space: linear part, then one translation (to the prototype's
+        // centre).
+        const auto& m = placement.object_from_parent.m;
+        const V3d shift = V3d(m[3][0], m[3][1], m[3][2]) - table.objects[shape.object].centre;
+        const V3d in_trace =
+            spread(placement.object_from_parent, absolute(P), false) + absolute(shift);
         bound += spread(placement.parent_from_object, in_trace, false) * 8;
     }
     bound = bound * float_eps;

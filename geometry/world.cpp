@@ -19,7 +19,7 @@ public:
         : options_(options), accel_(options.num_threads, options.view) {
         const auto start = std::chrono::steady_clock::now();
         table_ = collect_shapes(scene, options, diag);
-        add_instances(table_, accel_);
+        add_instances(table_, accel_, diag);
         const Mat4 identity;
         accel_.finish(trace_items(table_, table_.world, no_id, std::span(&identity, 1)));
         if (const std::string error = accel_.error(); !error.empty()) {

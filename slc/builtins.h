@@ -25,7 +25,8 @@ enum Property : std::uint32_t {
     PropSpaces = 1u << 9,
     PropState = 1u << 10,
     PropRandom = 1u << 11,
-    PropChannel = 1u << 12
+    PropChannel = 1u << 12,
+    PropInout = 1u << 13
 };
 
 // One place of a signature.

@@ -37,15 +37,16 @@ enum class VarKind : std::uint8_t {
 };
 
 struct Var {
-    std::string name; // unique in the program; Temps are t1, t2, ...
+    std::string name; // unique in the program; Temps are t1, t2, ...; a Global that a parameter hides has another name
     Type type = Type::Float;
     Detail detail = Detail::Varying; // Locals and Temps: result of the uniform/varying inference. A uniform
-                                     // variable is assigned only uniform values, under uniform control.
+                                     // variable is assigned only uniform values; Locals only under uniform control,
+                                     // Temps anywhere (they are read only where they were made).
     int array_length = 0;            // 0: not an array
     VarKind kind = VarKind::Temp;
     int index = -1;
     bool is_output = false;          // Param
-    bool declared_uniform = false;   // Local: the user wrote `uniform`
+    bool declared_uniform = false;   // the user wrote `uniform`; if it gets varying values it is varying all the same
     std::vector<float> values;       // Const: components (arrays: all elements)
     std::string text;                // Const string
     Loc loc;
@@ -55,7 +56,9 @@ using VarId = std::int32_t; // index into Program::vars
 constexpr VarId no_var = -1;
 
 enum class Op : std::uint8_t {
-    // dst = op(args). Numeric operands may differ in type: a float operand of a triple operation is spread.
+    // dst = op(args). Numeric operands may differ in type: a float operand of a triple operation is spread. dst may
+    // also be one of the args: all of them are read before it is written. Arguments of statements with bodies are
+    // read once, before the bodies run (a Loop's condition: each time, after bodies[0]).
     Copy,       // dst = a; converts float->triple (spread), float->matrix (diagonal), P/V/N/C by component;
                 // dst array: a is an array of the same length, or one value given to every element
     Add, Sub, Mul, Div, Neg, // component-wise; Matrix: Mul, Div (a * inverse(b)); both operands matrices

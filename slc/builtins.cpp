@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+// Decodes the signatures of sl_builtins.def once, at first use, into immutable rows.
+// The notation is described in the head of that file.
+#include "slc/builtins.h"
+
+#include <array>
+#include <cctype>
+
+namespace slc {
+
+namespace {
+
+// Names the tables' cells use.
+#define SL_R(name) (1ull << SL_VAR_##name)
+constexpr std::uint32_t SL_PURE = PropPure, SL_CONTEXT = PropContext, SL_VARIES = PropVaries,
+                        SL_EFFECT = PropEffect, SL_LIGHTS = PropLights, SL_AREA = PropArea,
+                        SL_TRACES = PropTraces, SL_TEXTURES = PropTextures,
+                        SL_MESSAGE = PropMessage, SL_SPACES = PropSpaces, SL_STATE = PropState,
+                        SL_RANDOM = PropRandom, SL_CHANNEL = PropChannel, SL_INOUT = PropInout;
+
+struct RawRow {
+    std::string_view name, signature, body;
+    std::uint64_t reads;
+    std::uint32_t properties;
+    std::string_view note;
+};
+
+constexpr RawRow raw_rows[] = {
+#define SL_BUILTIN(name, signature, body, reads, properties, note)                                 \
+    {#name, signature, #body, reads, properties, note},
+#include "runtime/abi/sl_builtins.def"
+#undef SL_BUILTIN
+};
+#undef SL_R
+
+ArgSpec decode_letter(char letter) {
+    ArgSpec spec;
+    spec.is_output = std::isupper(static_cast<unsigned char>(letter)) != 0;
+    switch (std::tolower(static_cast<unsigned char>(letter))) {
+    case 'f': spec.type = Type::Float; break;
+    case 'c': spec.type = Type::Color; break;
+    case 'p': spec.type = Type::Point; break;
+    case 'v': spec.type = Type::Vector; break;
+    case 'n': spec.type = Type::Normal; break;
+    case 'm': spec.type = Type::Matrix; break;
+    case 's': spec.type = Type::String; break;
+    case 'g':
+        spec.kind = ArgKind::Pvn;
+        spec.type = Type::Point;
+        break;
+    case 't':
+        spec.kind = ArgKind::Triple;
+        spec.type = Type::Color;
+        break;
+    default: spec.kind = ArgKind::Anything; break;
+    }
+    return spec;
+}
+
+// Arguments between the parentheses: letters, [letter], commas, and the marks + and *.
+void decode_args(std::string_view text, BuiltinRow& row) {
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        switch (text[i]) {
+        case ',':
+        case ']': break;
+        case '[':
+            row.args.push_back(decode_letter(text[++i]));
+            row.args.back().is_array = true;
+            break;
+        case '+': row.repeats_last = true; break;
+        case '*':
+            if (row.args.back().kind == ArgKind::Anything) {
+                row.args.pop_back();
+                row.takes_values = true;
+            } else {
+                row.takes_pairs = true;
+            }
+            break;
+        default: row.args.push_back(decode_letter(text[i])); break;
+        }
+    }
+}
+
+BuiltinRow decode(const RawRow& raw) {
+    BuiltinRow row;
+    row.name = raw.name;
+    row.signature = raw.signature;
+    row.body = raw.body;
+    row.note = raw.note;
+    row.reads = raw.reads;
+    row.properties = raw.properties;
+    const std::size_t open = raw.signature.find('(');
+    const std::string_view result = raw.signature.substr(0, open);
+    if (result == "void") {
+        row.result.type = Type::Void;
+    } else {
+        row.result = decode_letter(result[0]);
+    }
+    decode_args(raw.signature.substr(open + 1, raw.signature.size() - open - 2), row);
+    return row;
+}
+
+std::vector<BuiltinRow> decode_all() {
+    std::vector<BuiltinRow> rows;
+    rows.reserve(std::size(raw_rows));
+    for (const RawRow& raw : raw_rows) {
+        rows.push_back(decode(raw));
+    }
+    return rows;
+}
+
+constexpr std::array<VariableRow, SL_VAR_COUNT> variables = {{
+#define SL_TABLE_TYPE_float Type::Float
+#define SL_TABLE_TYPE_color Type::Color
+#define SL_TABLE_TYPE_point Type::Point
+#define SL_TABLE_TYPE_vector Type::Vector
+#define SL_TABLE_TYPE_normal Type::Normal
+#define SL_TABLE_DETAIL_uniform Detail::Uniform
+#define SL_TABLE_DETAIL_varying Detail::Varying
+#define SL_VAR(name, type, detail, readable, writable, note)                                       \
+    {#name, SL_TABLE_TYPE_##type, SL_TABLE_DETAIL_##detail, readable, writable, note},
+#include "runtime/abi/sl_variables.def"
+#undef SL_VAR
+}};
+
+} // namespace
+
+std::span<const BuiltinRow> builtin_rows() {
+    static const std::vector<BuiltinRow> rows = decode_all();
+    return rows;
+}
+
+std::vector<int> find_builtins(std::string_view name) {
+    std::vector<int> found;
+    const auto rows = builtin_rows();
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (rows[i].name == name) {
+            found.push_back(static_cast<int>(i));
+        }
+    }
+    return found;
+}
+
+std::span<const VariableRow> variable_rows() { return variables; }
+
+int find_variable(std::string_view name) {
+    for (std::size_t i = 0; i < variables.size(); ++i) {
+        if (variables[i].name == name) {
+            return static_cast<int>(i);
+        }
+    }
+    return -1;
+}
+
+std::string_view type_name(Type type) {
+    constexpr std::string_view names[] = {"void",   "float",  "color",  "point",
+                                          "vector", "normal", "matrix", "string"};
+    return names[static_cast<std::size_t>(type)];
+}
+
+std::string_view detail_name(Detail detail) {
+    return detail == Detail::Uniform ? "uniform" : "varying";
+}
+
+std::string_view shader_type_name(sl_shader_type type) {
+    constexpr std::string_view names[] = {"surface", "displacement", "light",
+                                          "volume",  "imager",       "transformation"};
+    return names[static_cast<std::size_t>(type)];
+}
+
+} // namespace slc

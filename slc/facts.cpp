@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the engine wants to know of a shader: needed, written and auxiliary variables, and SL_FACT_*.
+// Needs: pass_detail (auxiliary slice). Changes nothing.
+#include "slc/compiler.h"
+#include "slc/ir_util.h"
+#include "slc/liveness.h"
+#include "slc/source.h"
+
+#include <algorithm>
+
+namespace slc {
+
+namespace {
+
+class Analysis {
+public:
+    explicit Analysis(const Program& program)
+        : program_(program), live_(program, LiveMode::Results), aux_(program, LiveMode::Aux) {}
+    Facts run();
+
+private:
+    void block(const Block& b);
+    void statement(const Stmt& s);
+    void call(const Stmt& s);
+    void writes(const Stmt& s);
+    void explain(const Stmt& s);
+    void reason(int variable, const Stmt& s, const std::string& by);
+    [[nodiscard]] bool names_object_space(const Stmt& s) const;
+    [[nodiscard]] bool copies_Os(const Stmt& s) const;
+    [[nodiscard]] const Var& var(VarId id) const { return program_.vars[static_cast<std::size_t>(id)]; }
+    [[nodiscard]] bool is_light() const { return program_.shader_type == SL_SHADER_light; }
+
+    const Program& program_;
+    Liveness live_, aux_;
+    Facts facts_;
+    std::uint64_t explained_ = 0;
+};
+
+constexpr std::uint64_t bit(int variable) { return 1ull << variable; }
+constexpr std::uint64_t light_bits = bit(SL_VAR_L) | bit(SL_VAR_Cl) | bit(SL_VAR_Ol);
+
+Facts Analysis::run() {
+    block(program_.body);
+    facts_.needed = live_.at_entry().globals();
+    facts_.needed_aux = (facts_.facts & SL_FACT_area_operators) != 0 ? aux_.at_entry().globals() : 0;
+    // Inside light statements L, Cl and Ol are the statement's; elsewhere only a light shader has Cl and Ol.
+    const std::uint64_t local = is_light() ? bit(SL_VAR_L) : light_bits;
+    facts_.needed &= ~local;
+    facts_.needed_aux &= ~light_bits;
+    if (!is_light()) {
+        facts_.written &= ~light_bits;
+    }
+    // A result that is never written keeps what the engine has; it need not be handed in.
+    const std::uint64_t results = bit(SL_VAR_Ci) | bit(SL_VAR_Oi) | bit(SL_VAR_alpha) | bit(SL_VAR_Cl) | bit(SL_VAR_Ol) |
+                                  bit(SL_VAR_P) | bit(SL_VAR_N);
+    facts_.needed &= ~(results & ~facts_.written & ~explained_);
+    return std::move(facts_);
+}
+
+void Analysis::block(const Block& b) {
+    for (const Stmt& s : b) {
+        statement(s);
+    }
+}
+
+void Analysis::statement(const Stmt& s) {
+    // Every statement counts, even one pass_dead_code would remove: unoptimised programs still run it.
+    switch (s.op) {
+    case Op::Call: call(s); break;
+    case Op::Illuminance: facts_.facts |= SL_FACT_lights; break;
+    case Op::Solar: facts_.facts |= SL_FACT_solar; [[fallthrough]];
+    case Op::Illuminate:
+        facts_.facts |= SL_FACT_directional;
+        facts_.written |= bit(SL_VAR_L) | bit(SL_VAR_Cl);
+        break;
+    case Op::Gather: facts_.facts |= SL_FACT_traces; break;
+    default: break;
+    }
+    writes(s);
+    explain(s);
+    for (const Block& b : s.bodies) {
+        block(b);
+    }
+}
+
+void Analysis::call(const Stmt& s) {
+    static constexpr struct {
+        Property property;
+        std::uint32_t fact;
+    } facts[] = {{PropLights, SL_FACT_lights},       {PropArea, SL_FACT_area_operators}, {PropTraces, SL_FACT_traces},
+                 {PropTextures, SL_FACT_textures},   {PropState, SL_FACT_attributes},    {PropRandom, SL_FACT_random}};
+    const BuiltinRow& row = builtin_of(s);
+    for (const auto& f : facts) {
+        facts_.facts |= row.has(f.property) ? f.fact : 0;
+    }
+    facts_.facts |= row.name == "ambient" ? SL_FACT_ambient : 0;
+    facts_.facts |= names_object_space(s) ? SL_FACT_object_space : 0;
+}
+
+// "object", or a name that is not known before the shader runs.
+bool Analysis::names_object_space(const Stmt& s) const {
+    const BuiltinRow& row = builtin_of(s);
+    if (!row.has(PropSpaces)) {
+        return false;
+    }
+    return std::any_of(s.args.begin(), s.args.end(), [&](VarId id) {
+        const Var& v = var(id);
+        return v.type == Type::String && (v.kind != VarKind::Const || v.text == "object");
+    });
+}
+
+bool Analysis::copies_Os(const Stmt& s) const {
+    return s.op == Op::Copy && var(s.args[0]).kind == VarKind::Global && var(s.args[0]).index == SL_VAR_Os;
+}
+
+void Analysis::writes(const Stmt& s) {
+    for_each_write(s, [&](VarId id, bool) {
+        if (var(id).kind != VarKind::Global) {
+            return;
+        }
+        facts_.written |= bit(var(id).index);
+        // Oi = Os leaves the opacity the primitive has.
+        const bool changes_opacity = (var(id).index == SL_VAR_Oi && !copies_Os(s)) || var(id).index == SL_VAR_Os;
+        facts_.facts |= changes_opacity ? SL_FACT_writes_opacity : 0;
+    });
+}
+
+void Analysis::reason(int variable, const Stmt& s, const std::string& by) {
+    const bool wanted = (live_.at_entry().globals() & bit(variable)) != 0;
+    if (!wanted || (explained_ & bit(variable)) != 0) {
+        return;
+    }
+    explained_ |= bit(variable);
+    const std::string file = s.loc.file < program_.files.size() ? program_.files[s.loc.file] : std::string("?");
+    facts_.reasons.push_back(std::string(variable_rows()[static_cast<std::size_t>(variable)].name) + ": " + by + " at " +
+                             file + ":" + std::to_string(s.loc.line) + ":" + std::to_string(s.loc.col));
+}
+
+// The first statement that matters and reads the variable.
+void Analysis::explain(const Stmt& s) {
+    if (!live_.matters(s)) {
+        return;
+    }
+    for_each_read(s, [&](VarId id) {
+        if (var(id).kind == VarKind::Global) {
+            reason(var(id).index, s, "read");
+        }
+    });
+    for (int i = 0; s.op == Op::Call && i < SL_VAR_COUNT; ++i) {
+        if ((builtin_of(s).reads >> i & 1) != 0) {
+            reason(i, s, "read by " + std::string(builtin_of(s).name) + "()");
+        }
+    }
+}
+
+std::string names_of(std::uint64_t mask) {
+    std::string out;
+    for (int i = 0; i < SL_VAR_COUNT; ++i) {
+        out += (mask >> i & 1) != 0 ? " " + std::string(variable_rows()[static_cast<std::size_t>(i)].name) : "";
+    }
+    return out;
+}
+
+} // namespace
+
+Facts analyse(const Program& program) { return Analysis(program).run(); }
+
+std::string facts_text(const Program& program, const Facts& facts) {
+    static constexpr struct {
+        std::uint32_t fact;
+        std::string_view name;
+    } names[] = {{SL_FACT_lights, "lights"},
+                 {SL_FACT_ambient, "ambient"},
+                 {SL_FACT_directional, "directional"},
+                 {SL_FACT_area_operators, "area_operators"},
+                 {SL_FACT_traces, "traces"},
+                 {SL_FACT_textures, "textures"},
+                 {SL_FACT_object_space, "object_space"},
+                 {SL_FACT_attributes, "attributes"},
+                 {SL_FACT_random, "random"},
+                 {SL_FACT_solar, "solar"},
+                 {SL_FACT_writes_opacity, "writes_opacity"}};
+    std::string out = std::string(shader_type_name(program.shader_type)) + " " + program.name + "\n";
+    out += "needed:" + names_of(facts.needed) + "\nwritten:" + names_of(facts.written) +
+           "\nneeded_aux:" + names_of(facts.needed_aux) + "\nfacts:";
+    for (const auto& n : names) {
+        out += (facts.facts & n.fact) != 0 ? " " + std::string(n.name) : "";
+    }
+    out += "\n";
+    for (const std::string& r : facts.reasons) {
+        out += "  " + r + "\n";
+    }
+    return out;
+}
+
+} // namespace slc

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "slc/liveness.h"
+
+#include "slc/ir_util.h"
+
+#include <algorithm>
+
+namespace slc {
+
+bool VarSet::merge(const VarSet& other) {
+    bool grew = false;
+    for (std::size_t i = 0; i < words_.size(); ++i) {
+        const std::uint64_t sum = words_[i] | other.words_[i];
+        grew = grew || sum != words_[i];
+        words_[i] = sum;
+    }
+    return grew;
+}
+
+std::uint64_t VarSet::globals() const {
+    std::uint64_t mask = 0;
+    for (int i = 0; i < SL_VAR_COUNT; ++i) {
+        mask |= contains(global_slot(i)) ? 1ull << i : 0;
+    }
+    return mask;
+}
+
+Liveness::Liveness(const Program& program, LiveMode mode) : program_(program), mode_(mode), entry_(program) { solve(); }
+
+void Liveness::solve() {
+    do {
+        changed_ = false;
+        VarSet live(program_);
+        exit_set(live);
+        block(program_.body, live);
+        // Defaults are evaluated before anything else, in order; all of them matter.
+        entry_ = std::move(live);
+    } while (changed_);
+}
+
+// What the engine reads when the shader has ended: the results of its type that it writes, and output parameters.
+void Liveness::exit_set(VarSet& live) const {
+    if (mode_ == LiveMode::Aux) {
+        return;
+    }
+    const auto add = [&](std::initializer_list<int> ids) {
+        for (const int id : ids) {
+            live.insert(live.global_slot(id));
+        }
+    };
+    switch (program_.shader_type) {
+    case SL_SHADER_surface:
+    case SL_SHADER_volume: add({SL_VAR_Ci, SL_VAR_Oi}); break;
+    case SL_SHADER_displacement:
+    case SL_SHADER_transformation: add({SL_VAR_P, SL_VAR_N}); break;
+    case SL_SHADER_light: add({SL_VAR_L, SL_VAR_Cl, SL_VAR_Ol}); break;
+    case SL_SHADER_imager: add({SL_VAR_Ci, SL_VAR_Oi, SL_VAR_alpha}); break;
+    }
+    for (const Param& p : program_.params) {
+        if (program_.vars[static_cast<std::size_t>(p.var)].is_output) {
+            live.insert(live.slot(program_, p.var));
+        }
+    }
+}
+
+void Liveness::keep(const Stmt& s) {
+    if (kept_.insert(&s).second) {
+        changed_ = true; // enclosing statements and jumps may have been judged without it
+    }
+}
+
+bool Liveness::any_kept(const Stmt& s) const {
+    return std::any_of(s.bodies.begin(), s.bodies.end(), [&](const Block& b) {
+        return std::any_of(b.begin(), b.end(), [&](const Stmt& inner) { return kept_.contains(&inner); });
+    });
+}
+
+VarSet& Liveness::head(const Stmt& s) { return heads_.try_emplace(&s, program_).first->second; }
+
+void Liveness::read(VarId id, VarSet& live) const {
+    if (program_.vars[static_cast<std::size_t>(id)].kind != VarKind::Const) {
+        live.insert(live.slot(program_, id));
+    }
+}
+
+void Liveness::add_reads(const Stmt& s, VarSet& live) const {
+    for_each_read(s, [&](VarId id) { read(id, live); });
+    if (s.op != Op::Call) {
+        return;
+    }
+    const std::uint64_t reads = builtin_of(s).reads;
+    for (int i = 0; i < SL_VAR_COUNT; ++i) {
+        const bool exists = (variable_rows()[static_cast<std::size_t>(i)].readable & shader_type_bit(program_.shader_type)) != 0;
+        if ((reads >> i & 1) != 0 && exists) {
+            live.insert(live.global_slot(i));
+        }
+    }
+}
+
+// An area operator takes differences of its varying arguments; texture(name) those of s and t.
+void Liveness::add_area_reads(const Stmt& s, VarSet& live) const {
+    for (const VarId id : s.args) {
+        if (program_.vars[static_cast<std::size_t>(id)].detail == Detail::Varying) {
+            read(id, live);
+        }
+    }
+    for (const int id : {SL_VAR_s, SL_VAR_t}) {
+        if ((builtin_of(s).reads >> id & 1) != 0) {
+            live.insert(live.global_slot(id));
+        }
+    }
+}
+
+// Prints or stores something outside the shader.
+bool Liveness::has_effect(const Stmt& s) const {
+    if (s.op != Op::Call || mode_ == LiveMode::Aux) {
+        return false;
+    }
+    const BuiltinRow& row = builtin_of(s);
+    return row.has(PropEffect) && !row.has(PropRandom) &&
+           std::none_of(row.args.begin(), row.args.end(), [](const ArgSpec& a) { return a.is_output; });
+}
+
+void Liveness::block(const Block& b, VarSet& live) {
+    for (auto s = b.rbegin(); s != b.rend(); ++s) {
+        statement(*s, live);
+    }
+}
+
+void Liveness::statement(const Stmt& s, VarSet& live) {
+    switch (s.op) {
+    case Op::If: branch(s, live); break;
+    case Op::Loop: loop(s, live); break;
+    case Op::Scope: scope(s, live); break;
+    case Op::Illuminance:
+    case Op::Gather: light_loop(s, live); break;
+    case Op::Illuminate:
+    case Op::Solar: illuminate(s, live); break;
+    case Op::Break:
+    case Op::Continue:
+    case Op::Leave: jump(s, live); break;
+    default: simple(s, live); break;
+    }
+}
+
+void Liveness::simple(const Stmt& s, VarSet& live) {
+    const bool is_area = mode_ == LiveMode::Aux && s.op == Op::Call && builtin_of(s).has(PropArea);
+    bool wanted = has_effect(s) || is_area;
+    for_each_write(s, [&](VarId id, bool) { wanted = wanted || live.contains(live.slot(program_, id)); });
+    if (!wanted) {
+        return;
+    }
+    keep(s);
+    for_each_write(s, [&](VarId id, bool whole) {
+        if (whole) {
+            live.erase(live.slot(program_, id));
+        }
+    });
+    // At the auxiliary points light and rays give zero, whatever their arguments.
+    const bool is_zero = mode_ == LiveMode::Aux && s.op == Op::Call &&
+                         (builtin_of(s).properties & (PropLights | PropTraces)) != 0;
+    if (is_area) {
+        add_area_reads(s, live);
+    } else if (!is_zero) {
+        add_reads(s, live);
+    }
+}
+
+std::size_t Liveness::find_target(const Stmt& s) const {
+    const bool wants_loop = s.op != Op::Leave;
+    int levels = s.levels;
+    for (std::size_t i = targets_.size(); i-- > 0;) {
+        if (targets_[i].is_loop == wants_loop && --levels == 0) {
+            return i;
+        }
+    }
+    return targets_.size();
+}
+
+// A jump matters if what it leaves does.
+void Liveness::jump(const Stmt& s, VarSet& live) {
+    const std::size_t i = find_target(s);
+    if (i == targets_.size() || !kept_.contains(targets_[i].construct)) {
+        return;
+    }
+    keep(s);
+    live = s.op == Op::Continue ? targets_[i].after_continue : targets_[i].after_break;
+}
+
+void Liveness::branch(const Stmt& s, VarSet& live) {
+    VarSet otherwise = live;
+    block(s.bodies[0], live);
+    block(s.bodies[1], otherwise);
+    live.merge(otherwise);
+    if (any_kept(s)) {
+        keep(s);
+        add_reads(s, live);
+    }
+}
+
+void Liveness::scope(const Stmt& s, VarSet& live) {
+    targets_.push_back({&s, live, {}, false});
+    block(s.bodies[0], live);
+    targets_.pop_back();
+    if (any_kept(s)) {
+        keep(s);
+    }
+}
+
+// test (bodies[0]) -> out, or body (bodies[1]) -> step (bodies[2]) -> test
+void Liveness::loop(const Stmt& s, VarSet& live) {
+    const VarSet after = live;
+    VarSet at_step = head(s);
+    targets_.push_back({&s, after, {}, true});
+    block(s.bodies[2], at_step);
+    targets_.back().after_continue = at_step;
+    VarSet at_body = at_step;
+    block(s.bodies[1], at_body);
+    live.merge(at_body);
+    if (any_kept(s)) {
+        keep(s);
+        add_reads(s, live);
+    }
+    block(s.bodies[0], live);
+    targets_.pop_back();
+    changed_ = head(s).merge(live) || changed_;
+}
+
+// The body runs for each light that reaches the point, with L, Cl and Ol set anew.
+void Liveness::light_loop(const Stmt& s, VarSet& live) {
+    const VarSet after = live;
+    VarSet next = head(s); // at the start of the body, without what the statement sets
+    next.merge(after);
+    for (const Block& b : s.bodies) {
+        VarSet at_body = next;
+        targets_.push_back({&s, after, next, true});
+        block(b, at_body);
+        targets_.pop_back();
+        if (s.op == Op::Illuminance) {
+            for (const int id : {SL_VAR_L, SL_VAR_Cl, SL_VAR_Ol}) {
+                at_body.erase(at_body.global_slot(id));
+            }
+        }
+        live.merge(at_body);
+    }
+    changed_ = head(s).merge(live) || changed_;
+    bool wanted = any_kept(s);
+    for_each_write(s, [&](VarId id, bool) { wanted = wanted || live.contains(live.slot(program_, id)); });
+    if (wanted) {
+        keep(s);
+        add_reads(s, live);
+    }
+}
+
+// In its cone the statement sets L and runs the body; elsewhere Cl becomes 0 (sl.md 5.4).
+void Liveness::illuminate(const Stmt& s, VarSet& live) {
+    const bool has_cone = s.op == Op::Illuminate && s.args.size() > 1;
+    VarSet outside = live;
+    outside.erase(outside.global_slot(SL_VAR_Cl));
+    block(s.bodies[0], live);
+    live.erase(live.global_slot(SL_VAR_L));
+    if (has_cone) {
+        live.merge(outside);
+    }
+    if (mode_ == LiveMode::Results || any_kept(s)) {
+        keep(s);
+        add_reads(s, live);
+    }
+}
+
+} // namespace slc

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// Backward liveness over structured IR, per shading point: which variables are read later, and hence which
+// statements matter. Strong form: operands of a statement that does not matter are not read.
+// Loops are solved by repeating the whole walk until no set grows, so the cost is (nesting of loops + 2) walks.
+#pragma once
+
+#include "slc/ir.h"
+
+#include <cstdint>
+#include <unordered_map>
+#include <unordered_set>
+#include <vector>
+
+namespace slc {
+
+// Variables by VarId; predefined variables by their id, so that those only built-ins read have a place too.
+class VarSet {
+public:
+    VarSet() = default;
+    explicit VarSet(const Program& program)
+        : num_vars_(program.vars.size()), words_((num_vars_ + SL_VAR_COUNT + 63) / 64, 0) {}
+    [[nodiscard]] std::size_t slot(const Program& program, VarId id) const {
+        const Var& v = program.vars[static_cast<std::size_t>(id)];
+        return v.kind == VarKind::Global ? global_slot(v.index) : static_cast<std::size_t>(id);
+    }
+    [[nodiscard]] std::size_t global_slot(int variable) const { return num_vars_ + static_cast<std::size_t>(variable); }
+    void insert(std::size_t slot) { words_[slot / 64] |= 1ull << (slot % 64); }
+    void erase(std::size_t slot) { words_[slot / 64] &= ~(1ull << (slot % 64)); }
+    [[nodiscard]] bool contains(std::size_t slot) const { return (words_[slot / 64] >> (slot % 64) & 1) != 0; }
+    // True if something was added.
+    bool merge(const VarSet& other);
+    // Predefined variables as a needed mask.
+    [[nodiscard]] std::uint64_t globals() const;
+
+private:
+    std::size_t num_vars_ = 0;
+    std::vector<std::uint64_t> words_;
+};
+
+enum class LiveMode {
+    Results, // what reaches the outputs of the shader, or is printed
+    Aux      // what reaches the arguments of area operators: the slice evaluated at the auxiliary points
+};
+
+class Liveness {
+public:
+    Liveness(const Program& program, LiveMode mode);
+    [[nodiscard]] bool matters(const Stmt& s) const { return kept_.contains(&s); }
+    [[nodiscard]] const VarSet& at_entry() const { return entry_; }
+
+private:
+    struct Target { // where a jump goes
+        const Stmt* construct = nullptr;
+        VarSet after_break; // Scope: after Leave
+        VarSet after_continue;
+        bool is_loop = false;
+    };
+    void solve();
+    void block(const Block& b, VarSet& live);
+    void statement(const Stmt& s, VarSet& live);
+    void simple(const Stmt& s, VarSet& live);
+    void jump(const Stmt& s, VarSet& live);
+    void branch(const Stmt& s, VarSet& live);
+    void loop(const Stmt& s, VarSet& live);
+    void light_loop(const Stmt& s, VarSet& live);
+    void illuminate(const Stmt& s, VarSet& live);
+    void scope(const Stmt& s, VarSet& live);
+    void read(VarId id, VarSet& live) const;
+    void add_reads(const Stmt& s, VarSet& live) const;
+    void add_area_reads(const Stmt& s, VarSet& live) const;
+    [[nodiscard]] bool has_effect(const Stmt& s) const;
+    [[nodiscard]] bool any_kept(const Stmt& s) const;
+    void keep(const Stmt& s);
+    // Set at the start of a loop body from the walk before; grows.
+    VarSet& head(const Stmt& s);
+    void exit_set(VarSet& live) const;
+    std::size_t find_target(const Stmt& s) const;
+
+    const Program& program_;
+    LiveMode mode_;
+    std::unordered_set<const Stmt*> kept_;
+    std::unordered_map<const Stmt*, VarSet> heads_;
+    std::vector<Target> targets_;
+    VarSet entry_;
+    bool changed_ = false;
+};
+
+} // namespace slc

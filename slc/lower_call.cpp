@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// Calls to IR: rows of the built-in table become Call statements, user functions are inlined.
+// Arguments go by value; output arguments and whole arrays by reference; elements of arrays are copied in and back.
+#include "slc/lower.h"
+
+#include "slc/ir_util.h"
+
+#include <algorithm>
+
+namespace slc {
+
+using ast::Expr;
+using ast::ExprKind;
+using ast::Symbol;
+
+namespace {
+
+bool is_whole_array(const Expr& e) {
+    return e.kind == ExprKind::Name && e.symbol != nullptr && e.symbol->array_length != 0;
+}
+
+} // namespace
+
+VarId Lowering::call(const Expr& e, VarId into) {
+    if (e.function != nullptr) {
+        return inline_call(e);
+    }
+    return e.builtin >= 0 ? builtin_call(e, into) : constant(0);
+}
+
+// A built-in found by the name of its body, for calls the language makes itself (space casts).
+VarId Lowering::builtin_by_body(std::string_view body, std::vector<VarId> args, Type result, Loc loc) {
+    const auto rows = builtin_rows();
+    const auto it = std::find_if(rows.begin(), rows.end(), [&](const BuiltinRow& r) { return r.body == body; });
+    const VarId dst = temp(result, loc);
+    emit(Op::Call, dst, std::move(args), loc).builtin = static_cast<int>(it - rows.begin());
+    return dst;
+}
+
+VarId Lowering::output_argument(const Expr& e, std::vector<WriteBack>& back) {
+    if (e.kind == ExprKind::Name) {
+        return assignable(*e.symbol, e.loc);
+    }
+    if (e.kind != ExprKind::Index) { // a constant where only success matters
+        const VarId ignored = local("ignored", e.type, 0, e.loc);
+        emit(Op::Copy, ignored, {value(e)}, e.loc);
+        return ignored;
+    }
+    WriteBack w;
+    w.index = protect(value_as(*e.args[0], Type::Float), e.loc);
+    w.array = assignable(*e.symbol, e.loc);
+    w.element = local("element", e.symbol->type, 0, e.loc);
+    emit(Op::Load, w.element, {w.array, w.index}, e.loc);
+    back.push_back(w);
+    return w.element;
+}
+
+void Lowering::write_back(const std::vector<WriteBack>& back, Loc loc) {
+    for (const WriteBack& w : back) {
+        emit(Op::Store, w.array, {w.index, w.element}, loc);
+    }
+}
+
+VarId Lowering::builtin_call(const Expr& e, VarId into) {
+    const BuiltinRow& row = builtin_rows()[static_cast<std::size_t>(e.builtin)];
+    std::vector<VarId> args;
+    std::vector<WriteBack> back;
+    bool has_outputs = false;
+    for (std::size_t i = 0; i < e.args.size(); ++i) {
+        const Expr& arg = *e.args[i];
+        const bool is_output = i < row.args.size() && row.args[i].is_output;
+        has_outputs = has_outputs || is_output;
+        if (is_output) {
+            args.push_back(output_argument(arg, back));
+        } else if (is_whole_array(arg)) {
+            args.push_back(variable(*arg.symbol, arg.loc));
+        } else {
+            const VarId id = e.arg_types[i] == Type::Void ? value(arg) : value_as(arg, e.arg_types[i]);
+            const bool changes_later = std::any_of(e.args.begin() + static_cast<std::ptrdiff_t>(i) + 1, e.args.end(),
+                                                   [](const Expr* x) { return has_effects(*x); });
+            args.push_back(changes_later ? protect(id, arg.loc) : id);
+        }
+        if (i == 0 && row.has(PropChannel)) {
+            args.push_back(arg.channel != nullptr ? value_as(*arg.channel, Type::Float) : constant(0));
+        }
+    }
+    VarId dst = no_var;
+    if (e.type != Type::Void) {
+        dst = has_outputs ? temp(e.type, e.loc) : target(e.type, into, e.loc);
+    }
+    emit(Op::Call, dst, std::move(args), e.loc).builtin = e.builtin;
+    write_back(back, e.loc);
+    return dst;
+}
+
+// Output formals and arrays are names of the actual variable. An array formal that is assigned without being
+// output gets a copy.
+void Lowering::bind_reference(const Symbol& formal, const Expr& arg, std::vector<WriteBack>& back) {
+    if (formal.array_length == 0) {
+        variables_[&formal] = output_argument(arg, back);
+        return;
+    }
+    const VarId actual = formal.is_output ? assignable(*arg.symbol, arg.loc) : variable(*arg.symbol, arg.loc);
+    variables_[&formal] = actual;
+    if (formal.assigned && !formal.is_output) {
+        const VarId copy = local(formal.name, formal.type, var(actual).array_length, formal.loc);
+        emit(Op::Copy, copy, {actual}, arg.loc);
+        variables_[&formal] = copy;
+    }
+}
+
+VarId Lowering::inline_call(const Expr& e) {
+    const Deeper deeper(*this, e.loc);
+    const ast::Function& f = *e.function;
+    std::vector<WriteBack> back;
+    // All arguments are evaluated before any formal is bound, since they may call the same function.
+    std::vector<VarId> given(e.args.size(), no_var);
+    for (std::size_t i = 0; i < e.args.size(); ++i) {
+        if (!f.formals[i]->is_output && f.formals[i]->array_length == 0) {
+            given[i] = protect(value(*e.args[i]), e.args[i]->loc);
+        }
+    }
+    for (std::size_t i = 0; i < e.args.size(); ++i) {
+        if (given[i] != no_var) {
+            emit(Op::Copy, local_for(*f.formals[i]), {given[i]}, e.args[i]->loc);
+        } else {
+            bind_reference(*f.formals[i], *e.args[i], back);
+        }
+    }
+    const VarId outer_result = result_;
+    result_ = no_var;
+    if (e.type != Type::Void) {
+        result_ = local(f.name + "_result", e.type, 0, e.loc);
+        emit(Op::Copy, result_, {zero(e.type)}, e.loc);
+    }
+    body(f.body);
+    const VarId result = result_;
+    result_ = outer_result;
+    write_back(back, e.loc);
+    return result;
+}
+
+} // namespace slc

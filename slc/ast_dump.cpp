@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Syntax tree as indented text, for --dump=ast and tests. Types are shown once the checker has been there.
+// Syntax tree as indented text, for --dump=ast and tests. Types are shown once the checker has been
+// there.
 #include "slc/ast.h"
-
 #include "slc/builtins.h"
 
 #include <cstdio>
@@ -15,7 +15,9 @@ public:
     std::string run(const File& file);
 
 private:
-    void line(const std::string& text) { out_ += std::string(static_cast<std::size_t>(2 * depth_), ' ') + text + "\n"; }
+    void line(const std::string& text) {
+        out_ += std::string(static_cast<std::size_t>(2 * depth_), ' ') + text + "\n";
+    }
     void symbol(const std::string& head, const Symbol& s);
     void variable(const std::string& head, const Variable& v);
     void function(const Function& f);
@@ -30,23 +32,39 @@ private:
 
 std::string op_text(Op op) {
     switch (op) {
-    case Op::Add: return "+";
+    case Op::Add:
+        return "+";
     case Op::Sub:
-    case Op::Neg: return "-";
-    case Op::Mul: return "*";
-    case Op::Div: return "/";
-    case Op::Dot: return ".";
-    case Op::Cross: return "^";
-    case Op::Eq: return "==";
-    case Op::Ne: return "!=";
-    case Op::Lt: return "<";
-    case Op::Le: return "<=";
-    case Op::Gt: return ">";
-    case Op::Ge: return ">=";
-    case Op::And: return "&&";
-    case Op::Or: return "||";
-    case Op::Not: return "!";
-    default: return "";
+    case Op::Neg:
+        return "-";
+    case Op::Mul:
+        return "*";
+    case Op::Div:
+        return "/";
+    case Op::Dot:
+        return ".";
+    case Op::Cross:
+        return "^";
+    case Op::Eq:
+        return "==";
+    case Op::Ne:
+        return "!=";
+    case Op::Lt:
+        return "<";
+    case Op::Le:
+        return "<=";
+    case Op::Gt:
+        return ">";
+    case Op::Ge:
+        return ">=";
+    case Op::And:
+        return "&&";
+    case Op::Or:
+        return "||";
+    case Op::Not:
+        return "!";
+    default:
+        return "";
     }
 }
 
@@ -68,16 +86,25 @@ std::string Dumper::expr(const Expr& e) {
         std::snprintf(text, sizeof text, "%g", e.number);
         return text;
     }
-    case ExprKind::Text: return "\"" + e.text + "\"" + channel;
-    case ExprKind::Name: return e.text + channel;
-    case ExprKind::Index: return e.text + "[" + expr(*e.args[0]) + "]" + channel;
-    case ExprKind::Call: return "(" + e.text + type + list(e.args) + ")";
-    case ExprKind::Cast: return "(cast" + type + (e.text.empty() ? "" : " \"" + e.text + "\"") + list(e.args) + ")";
-    case ExprKind::Ternary: return "(?" + type + list(e.args) + ")";
-    case ExprKind::Assign: return "(" + op_text(e.op) + "=" + list(e.args) + ")";
-    case ExprKind::Tuple: return "(tuple" + type + list(e.args) + ")";
+    case ExprKind::Text:
+        return "\"" + e.text + "\"" + channel;
+    case ExprKind::Name:
+        return e.text + channel;
+    case ExprKind::Index:
+        return e.text + "[" + expr(*e.args[0]) + "]" + channel;
+    case ExprKind::Call:
+        return "(" + e.text + type + list(e.args) + ")";
+    case ExprKind::Cast:
+        return "(cast" + type + (e.text.empty() ? "" : " \"" + e.text + "\"") + list(e.args) + ")";
+    case ExprKind::Ternary:
+        return "(?" + type + list(e.args) + ")";
+    case ExprKind::Assign:
+        return "(" + op_text(e.op) + "=" + list(e.args) + ")";
+    case ExprKind::Tuple:
+        return "(tuple" + type + list(e.args) + ")";
     case ExprKind::Unary:
-    case ExprKind::Binary: break;
+    case ExprKind::Binary:
+        break;
     }
     return "(" + op_text(e.op) + type + list(e.args) + ")";
 }
@@ -131,9 +158,10 @@ void Dumper::statements(const std::vector<Stmt*>& list) {
 }
 
 void Dumper::statement(const Stmt& s) {
-    constexpr const char* names[] = {"empty",  "block",      "declare", "extern",      "expression", "if",
-                                     "while",  "for",        "break",   "continue",    "return",     "solar",
-                                     "illuminate", "illuminance", "gather", "function"};
+    constexpr const char* names[] = {"empty",      "block",       "declare", "extern",
+                                     "expression", "if",          "while",   "for",
+                                     "break",      "continue",    "return",  "solar",
+                                     "illuminate", "illuminance", "gather",  "function"};
     if (s.kind == StmtKind::Function) {
         function(*s.function);
         return;
@@ -162,6 +190,8 @@ std::string Dumper::run(const File& file) {
 
 } // namespace
 
-std::string dump(const File& file) { return Dumper().run(file); }
+std::string dump(const File& file) {
+    return Dumper().run(file);
+}
 
 } // namespace slc::ast

@@ -37,13 +37,27 @@ ArgSpec decode_letter(char letter) {
     ArgSpec spec;
     spec.is_output = std::isupper(static_cast<unsigned char>(letter)) != 0;
     switch (std::tolower(static_cast<unsigned char>(letter))) {
-    case 'f': spec.type = Type::Float; break;
-    case 'c': spec.type = Type::Color; break;
-    case 'p': spec.type = Type::Point; break;
-    case 'v': spec.type = Type::Vector; break;
-    case 'n': spec.type = Type::Normal; break;
-    case 'm': spec.type = Type::Matrix; break;
-    case 's': spec.type = Type::String; break;
+    case 'f':
+        spec.type = Type::Float;
+        break;
+    case 'c':
+        spec.type = Type::Color;
+        break;
+    case 'p':
+        spec.type = Type::Point;
+        break;
+    case 'v':
+        spec.type = Type::Vector;
+        break;
+    case 'n':
+        spec.type = Type::Normal;
+        break;
+    case 'm':
+        spec.type = Type::Matrix;
+        break;
+    case 's':
+        spec.type = Type::String;
+        break;
     case 'g':
         spec.kind = ArgKind::Pvn;
         spec.type = Type::Point;
@@ -52,7 +66,9 @@ ArgSpec decode_letter(char letter) {
         spec.kind = ArgKind::Triple;
         spec.type = Type::Color;
         break;
-    default: spec.kind = ArgKind::Anything; break;
+    default:
+        spec.kind = ArgKind::Anything;
+        break;
     }
     return spec;
 }
@@ -62,12 +78,15 @@ void decode_args(std::string_view text, BuiltinRow& row) {
     for (std::size_t i = 0; i < text.size(); ++i) {
         switch (text[i]) {
         case ',':
-        case ']': break;
+        case ']':
+            break;
         case '[':
             row.args.push_back(decode_letter(text[++i]));
             row.args.back().is_array = true;
             break;
-        case '+': row.repeats_last = true; break;
+        case '+':
+            row.repeats_last = true;
+            break;
         case '*':
             if (row.args.back().kind == ArgKind::Anything) {
                 row.args.pop_back();
@@ -76,7 +95,9 @@ void decode_args(std::string_view text, BuiltinRow& row) {
                 row.takes_pairs = true;
             }
             break;
-        default: row.args.push_back(decode_letter(text[i])); break;
+        default:
+            row.args.push_back(decode_letter(text[i]));
+            break;
         }
     }
 }
@@ -110,11 +131,11 @@ std::vector<BuiltinRow> decode_all() {
 }
 
 constexpr std::array<VariableRow, SL_VAR_COUNT> variables = {{
-#define SL_TABLE_TYPE_float Type::Float
-#define SL_TABLE_TYPE_color Type::Color
-#define SL_TABLE_TYPE_point Type::Point
-#define SL_TABLE_TYPE_vector Type::Vector
-#define SL_TABLE_TYPE_normal Type::Normal
+#define SL_TABLE_TYPE_float     Type::Float
+#define SL_TABLE_TYPE_color     Type::Color
+#define SL_TABLE_TYPE_point     Type::Point
+#define SL_TABLE_TYPE_vector    Type::Vector
+#define SL_TABLE_TYPE_normal    Type::Normal
 #define SL_TABLE_DETAIL_uniform Detail::Uniform
 #define SL_TABLE_DETAIL_varying Detail::Varying
 #define SL_VAR(name, type, detail, readable, writable, note)                                       \
@@ -141,7 +162,9 @@ std::vector<int> find_builtins(std::string_view name) {
     return found;
 }
 
-std::span<const VariableRow> variable_rows() { return variables; }
+std::span<const VariableRow> variable_rows() {
+    return variables;
+}
 
 int find_variable(std::string_view name) {
     for (std::size_t i = 0; i < variables.size(); ++i) {

@@ -31,10 +31,10 @@ enum Property : std::uint32_t {
 
 // One place of a signature.
 enum class ArgKind : std::uint8_t {
-    Exact,    // `type`
-    Pvn,      // g: point, vector or normal
-    Triple,   // t: result only, whatever triple the context asks for
-    Anything  // x: value, X: output, of any type
+    Exact,   // `type`
+    Pvn,     // g: point, vector or normal
+    Triple,  // t: result only, whatever triple the context asks for
+    Anything // x: value, X: output, of any type
 };
 
 struct ArgSpec {
@@ -79,6 +79,8 @@ struct VariableRow {
 [[nodiscard]] std::string_view detail_name(Detail detail);
 [[nodiscard]] std::string_view shader_type_name(sl_shader_type type); // "surface" ...
 // SL_IN_* bit of a shader type.
-[[nodiscard]] constexpr std::uint32_t shader_type_bit(sl_shader_type type) { return 1u << type; }
+[[nodiscard]] constexpr std::uint32_t shader_type_bit(sl_shader_type type) {
+    return 1u << type;
+}
 
 } // namespace slc

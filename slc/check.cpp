@@ -9,7 +9,9 @@ using ast::Symbol;
 using ast::SymbolKind;
 using ast::Variable;
 
-void check(ast::File& file, Messages& messages) { Checker(file, messages).run(); }
+void check(ast::File& file, Messages& messages) {
+    Checker(file, messages).run();
+}
 
 void Checker::run() {
     for (const ast::Definition& d : file_.definitions) {
@@ -111,7 +113,8 @@ void Checker::check_initialiser(Variable& variable) {
     }
     if (Symbol* source = array_of(*variable.init)) {
         if (source->type != symbol.type || source->array_length != symbol.array_length) {
-            messages_.error(variable.init->loc, "array " + quoted(source->name) + " does not have the type and length of " +
+            messages_.error(variable.init->loc, "array " + quoted(source->name) +
+                                                    " does not have the type and length of " +
                                                     quoted(symbol.name));
         }
         return;
@@ -119,8 +122,8 @@ void Checker::check_initialiser(Variable& variable) {
     deliver(*variable.init, symbol.type, what);
 }
 
-// `extern` names a variable of an enclosing scope (sl.md 1.5). Point, vector and normal may stand for each other:
-// shaders of 3.1 declare all three as point.
+// `extern` names a variable of an enclosing scope (sl.md 1.5). Point, vector and normal may stand
+// for each other: shaders of 3.1 declare all three as point.
 void Checker::declare_extern(Variable& variable) {
     Symbol& wanted = *variable.symbol;
     Symbol* found = scopes_.find_outer(wanted.name);
@@ -133,7 +136,8 @@ void Checker::declare_extern(Variable& variable) {
     }
     const bool interchange = is_pvn(wanted.type) && is_pvn(found->type);
     if (wanted.type != Type::Void && wanted.type != found->type && !interchange) {
-        messages_.error(wanted.loc, quoted(wanted.name) + " is " + std::string(type_name(found->type)) + ", not " +
+        messages_.error(wanted.loc, quoted(wanted.name) + " is " +
+                                        std::string(type_name(found->type)) + ", not " +
                                         std::string(type_name(wanted.type)));
     }
     if (variable.init != nullptr || variable.has_elements) {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Syntax tree to typed syntax tree (sl.md 1.4 - 1.7, 2): names, types, conversions, overloads.
-// Two phases per expression: costs() finds, from the leaves up, which types it can deliver and at what cost, and
-// reports errors; deliver() then fixes, from the root down, the cheapest way to the wanted type.
-// Legality by shader type is decided in lowering, where functions have become part of a shader.
+// Two phases per expression: costs() finds, from the leaves up, which types it can deliver and at
+// what cost, and reports errors; deliver() then fixes, from the root down, the cheapest way to the
+// wanted type. Legality by shader type is decided in lowering, where functions have become part of
+// a shader.
 #pragma once
 
 #include "slc/ast.h"
@@ -16,13 +17,17 @@ namespace slc {
 
 void check(ast::File& file, Messages& messages);
 
-// Implicit conversion costs (sl.md 2.4): exact 0, P/V/N 1, float to P/V/N 8, float to color 9, float to matrix 10.
+// Implicit conversion costs (sl.md 2.4): exact 0, P/V/N 1, float to P/V/N 8, float to color 9,
+// float to matrix 10.
 [[nodiscard]] std::uint8_t conversion_cost(Type from, Type to);
-[[nodiscard]] constexpr bool is_pvn(Type t) { return t >= Type::Point && t <= Type::Normal; }
+[[nodiscard]] constexpr bool is_pvn(Type t) {
+    return t >= Type::Point && t <= Type::Normal;
+}
 
 class Checker {
 public:
-    Checker(ast::File& file, Messages& messages) : file_(file), messages_(messages), scopes_(file) {}
+    Checker(ast::File& file, Messages& messages)
+        : file_(file), messages_(messages), scopes_(file) {}
     void run();
 
 private:
@@ -71,7 +76,8 @@ private:
 
     // Delivers e as `wanted`; `what` names the place for the message ("the angle").
     void deliver(ast::Expr& e, Type wanted, std::string_view what);
-    // Without a wanted type: float if it can be one (prefer_float), else what the call's first row gives.
+    // Without a wanted type: float if it can be one (prefer_float), else what the call's first row
+    // gives.
     Type deliver_any(ast::Expr& e, bool prefer_float);
     void settle(ast::Expr& e, Type natural);
 

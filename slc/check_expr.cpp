@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Types of expressions, sl.md 1.4, 2.2 and 2.4: costs from the leaves up, then delivery from the root down.
+// Types of expressions, sl.md 1.4, 2.2 and 2.4: costs from the leaves up, then delivery from the
+// root down.
 #include "slc/check.h"
 
 #include <algorithm>
@@ -15,15 +16,19 @@ using ast::SymbolKind;
 
 namespace {
 
-// Where several operand types are equally cheap: float first (sl.md 2.4 rule 3), a bare triple is a point.
-constexpr Type preference[] = {Type::Float,  Type::Point,  Type::Vector, Type::Normal,
+// Where several operand types are equally cheap: float first (sl.md 2.4 rule 3), a bare triple is a
+// point.
+constexpr Type preference[] = {Type::Float, Type::Point,  Type::Vector, Type::Normal,
                                Type::Color, Type::Matrix, Type::String};
 
 std::uint8_t add(unsigned a, unsigned b) {
-    return a == no_cost || b == no_cost ? no_cost : static_cast<std::uint8_t>(std::min(a + b, 254u));
+    return a == no_cost || b == no_cost ? no_cost
+                                        : static_cast<std::uint8_t>(std::min(a + b, 254u));
 }
 
-bool is_comparison(Op op) { return op >= Op::Eq && op <= Op::Ge; }
+bool is_comparison(Op op) {
+    return op >= Op::Eq && op <= Op::Ge;
+}
 
 // Types of sums and differences of points, vectors and normals.
 Type pvn_result(Op op, Type l, Type r) {
@@ -35,7 +40,8 @@ Type pvn_result(Op op, Type l, Type r) {
 
 Type arithmetic_result(Op op, Type l, Type r) {
     if (l == Type::Matrix || r == Type::Matrix) {
-        const bool both = (l == Type::Matrix || l == Type::Float) && (r == Type::Matrix || r == Type::Float);
+        const bool both =
+            (l == Type::Matrix || l == Type::Float) && (r == Type::Matrix || r == Type::Float);
         return both && (op == Op::Mul || op == Op::Div) ? Type::Matrix : Type::Void;
     }
     if (l == Type::String || r == Type::String) {
@@ -62,7 +68,8 @@ Type comparison_result(Op op, Type l, Type r) {
 Type binary_result(Op op, Type l, Type r) {
     switch (op) {
     case Op::And:
-    case Op::Or: return l == Type::Float && r == Type::Float ? Type::Float : Type::Void;
+    case Op::Or:
+        return l == Type::Float && r == Type::Float ? Type::Float : Type::Void;
     case Op::Dot:
     case Op::Cross: {
         const bool fits = (is_pvn(l) && is_pvn(r)) || (l == Type::Color && r == Type::Color);
@@ -71,29 +78,47 @@ Type binary_result(Op op, Type l, Type r) {
         }
         return op == Op::Dot ? Type::Float : (l == Type::Color ? Type::Color : Type::Vector);
     }
-    default: return is_comparison(op) ? comparison_result(op, l, r) : arithmetic_result(op, l, r);
+    default:
+        return is_comparison(op) ? comparison_result(op, l, r) : arithmetic_result(op, l, r);
     }
 }
 
 std::string_view op_text(Op op) {
     switch (op) {
-    case Op::Add: return "+";
-    case Op::Sub: return "-";
-    case Op::Mul: return "*";
-    case Op::Div: return "/";
-    case Op::Dot: return ".";
-    case Op::Cross: return "^";
-    case Op::Eq: return "==";
-    case Op::Ne: return "!=";
-    case Op::Lt: return "<";
-    case Op::Le: return "<=";
-    case Op::Gt: return ">";
-    case Op::Ge: return ">=";
-    case Op::And: return "&&";
-    case Op::Or: return "||";
-    case Op::Neg: return "-";
-    case Op::Not: return "!";
-    default: return "=";
+    case Op::Add:
+        return "+";
+    case Op::Sub:
+        return "-";
+    case Op::Mul:
+        return "*";
+    case Op::Div:
+        return "/";
+    case Op::Dot:
+        return ".";
+    case Op::Cross:
+        return "^";
+    case Op::Eq:
+        return "==";
+    case Op::Ne:
+        return "!=";
+    case Op::Lt:
+        return "<";
+    case Op::Le:
+        return "<=";
+    case Op::Gt:
+        return ">";
+    case Op::Ge:
+        return ">=";
+    case Op::And:
+        return "&&";
+    case Op::Or:
+        return "||";
+    case Op::Neg:
+        return "-";
+    case Op::Not:
+        return "!";
+    default:
+        return "=";
     }
 }
 
@@ -132,25 +157,49 @@ const Costs& Checker::costs(Expr& e) {
     }
     e.costs.known = true;
     switch (e.kind) {
-    case ExprKind::Number: e.costs[Type::Float] = 0; break;
-    case ExprKind::Text: e.costs[Type::String] = 0; break;
-    case ExprKind::Name: name_costs(e); break;
-    case ExprKind::Index: index_costs(e); break;
-    case ExprKind::Call: call_costs(e); break;
-    case ExprKind::Cast: cast_costs(e); break;
-    case ExprKind::Unary: unary_costs(e); break;
-    case ExprKind::Binary: binary_costs(e); break;
-    case ExprKind::Ternary: ternary_costs(e); break;
-    case ExprKind::Assign: assign_costs(e); break;
-    case ExprKind::Tuple: tuple_costs(e); break;
+    case ExprKind::Number:
+        e.costs[Type::Float] = 0;
+        break;
+    case ExprKind::Text:
+        e.costs[Type::String] = 0;
+        break;
+    case ExprKind::Name:
+        name_costs(e);
+        break;
+    case ExprKind::Index:
+        index_costs(e);
+        break;
+    case ExprKind::Call:
+        call_costs(e);
+        break;
+    case ExprKind::Cast:
+        cast_costs(e);
+        break;
+    case ExprKind::Unary:
+        unary_costs(e);
+        break;
+    case ExprKind::Binary:
+        binary_costs(e);
+        break;
+    case ExprKind::Ternary:
+        ternary_costs(e);
+        break;
+    case ExprKind::Assign:
+        assign_costs(e);
+        break;
+    case ExprKind::Tuple:
+        tuple_costs(e);
+        break;
     }
-    if (e.channel != nullptr && e.kind != ExprKind::Text && e.kind != ExprKind::Name && e.kind != ExprKind::Index) {
+    if (e.channel != nullptr && e.kind != ExprKind::Text && e.kind != ExprKind::Name &&
+        e.kind != ExprKind::Index) {
         fail(*e.channel, "a texture channel follows the name of a texture");
     }
     return e.costs;
 }
 
-// Looks the name up once; predefined variables and those of enclosing functions need extern, by the rules.
+// Looks the name up once; predefined variables and those of enclosing functions need extern, by the
+// rules.
 void Checker::resolve_name(Expr& e) {
     if (e.symbol != nullptr) {
         return;
@@ -165,7 +214,8 @@ void Checker::resolve_name(Expr& e) {
         return;
     }
     if (found.beyond_function && warned_extern_.emplace(function_, e.text).second) {
-        messages_.warning(e.loc, quoted(e.text) + " is not declared in function " + quoted(function_->name) +
+        messages_.warning(e.loc, quoted(e.text) + " is not declared in function " +
+                                     quoted(function_->name) +
                                      "; the outer variable is used, as with 'extern'");
     }
 }
@@ -195,7 +245,8 @@ void Checker::index_costs(Expr& e) {
     e.costs[e.symbol->type] = 0;
 }
 
-// A cast is decisive: it picks the overload that gives its type, and only then converts (sl.md 1.4, 2.4).
+// A cast is decisive: it picks the overload that gives its type, and only then converts
+// (sl.md 1.4, 2.4).
 void Checker::cast_costs(Expr& e) {
     Expr& operand = *e.args[0];
     const Costs& c = costs(operand);
@@ -252,8 +303,10 @@ Checker::Operands Checker::choose_operands(Op op, Expr& left, Expr& right) {
             const bool mixed_pvn = lt != rt && is_pvn(lt) && is_pvn(rt);
             // A comparison with a triple takes both as triples, if a call offers the choice.
             const bool spread = is_comparison(op) && (lt == Type::Float) != (rt == Type::Float);
-            const bool no_vector = (op == Op::Dot || op == Op::Cross) && (lt == Type::Color || rt == Type::Color);
-            const unsigned cost = 4u * (l[lt] + r[rt]) + (mixed_pvn ? 1 : 0) + (spread ? 2 : 0) + (no_vector ? 2 : 0);
+            const bool no_vector =
+                (op == Op::Dot || op == Op::Cross) && (lt == Type::Color || rt == Type::Color);
+            const unsigned cost =
+                4u * (l[lt] + r[rt]) + (mixed_pvn ? 1 : 0) + (spread ? 2 : 0) + (no_vector ? 2 : 0);
             if (cost < best_cost) {
                 best_cost = cost;
                 best = {lt, rt, result};
@@ -273,14 +326,17 @@ void Checker::binary_costs(Expr& e) {
     }
     const Operands chosen = choose_operands(e.op, left, right);
     if (chosen.result == Type::Void) {
-        std::string text = "operator " + std::string(op_text(e.op)) + " does not take " + describe(costs(left)) +
-                           " and " + describe(costs(right));
-        const bool mixes = (costs(left)[Type::Color] != no_cost) != (costs(right)[Type::Color] != no_cost);
+        std::string text = "operator " + std::string(op_text(e.op)) + " does not take " +
+                           describe(costs(left)) + " and " + describe(costs(right));
+        const bool mixes =
+            (costs(left)[Type::Color] != no_cost) != (costs(right)[Type::Color] != no_cost);
         fail(e, text + (mixes ? "; cast one of them" : ""));
         return;
     }
     if ((e.op == Op::Eq || e.op == Op::Ne) && left.kind == ExprKind::Unary && left.op == Op::Not) {
-        messages_.warning(left.loc, "'!' applies to the left operand only; write !(a == b) for the other meaning");
+        messages_.warning(
+            left.loc,
+            "'!' applies to the left operand only; write !(a == b) for the other meaning");
     }
     e.operand_types[0] = chosen.left;
     e.operand_types[1] = chosen.right;
@@ -306,7 +362,8 @@ void Checker::ternary_costs(Expr& e) {
         }
     }
     if (!any) {
-        fail(e, "the two values of '?' have types without a common one: " + describe(a) + " and " + describe(b));
+        fail(e, "the two values of '?' have types without a common one: " + describe(a) + " and " +
+                    describe(b));
     }
 }
 
@@ -335,8 +392,10 @@ void Checker::mark_assigned(Expr& target) {
         return;
     }
     const bool formal = symbol->kind == SymbolKind::Formal;
-    if ((formal || symbol->kind == SymbolKind::Param) && !symbol->is_output && warned_assigned_.insert(symbol).second) {
-        messages_.warning(target.loc, std::string(formal ? "formal " : "parameter ") + quoted(symbol->name) +
+    if ((formal || symbol->kind == SymbolKind::Param) && !symbol->is_output &&
+        warned_assigned_.insert(symbol).second) {
+        messages_.warning(target.loc, std::string(formal ? "formal " : "parameter ") +
+                                          quoted(symbol->name) +
                                           " is not 'output'; a local copy is assigned");
     }
 }
@@ -356,11 +415,13 @@ bool Checker::assign_array(Expr& e) {
         return false;
     }
     const Symbol* source = array_of(*e.args[1]);
-    const bool fits = source != nullptr && source->type == target->type && e.op == Op::Copy &&
-                      (source->array_length == target->array_length || source->array_length == ast::unsized_array ||
-                       target->array_length == ast::unsized_array);
+    const bool fits =
+        source != nullptr && source->type == target->type && e.op == Op::Copy &&
+        (source->array_length == target->array_length ||
+         source->array_length == ast::unsized_array || target->array_length == ast::unsized_array);
     if (!fits) {
-        fail(e, "array " + quoted(target->name) + " takes an array of the same type and length, or use an index");
+        fail(e, "array " + quoted(target->name) +
+                    " takes an array of the same type and length, or use an index");
     }
     mark_assigned(*e.args[0]);
     e.costs.failed = true; // an array assignment has no value
@@ -391,8 +452,8 @@ void Checker::assign_costs(Expr& e) {
     }
     const Operands chosen = choose_operands(e.op, target, value);
     if (chosen.result == Type::Void || conversion_cost(chosen.result, type) == no_cost) {
-        fail(e, "operator " + std::string(op_text(e.op)) + "= does not take " + std::string(type_name(type)) + " and " +
-                    describe(costs(value)));
+        fail(e, "operator " + std::string(op_text(e.op)) + "= does not take " +
+                    std::string(type_name(type)) + " and " + describe(costs(value)));
         return;
     }
     e.operand_types[0] = chosen.left;
@@ -432,10 +493,11 @@ void Checker::deliver(Expr& e, Type wanted, std::string_view what) {
     }
     if (best == no_cost) {
         const std::string from = describe(c);
-        const bool castable = is_triple(wanted) && (c[Type::Color] != no_cost || c[Type::Point] != no_cost ||
-                                                    c[Type::Vector] != no_cost || c[Type::Normal] != no_cost);
-        fail(e, std::string(what) + " is " + std::string(type_name(wanted)) + ", but " + from + " is given" +
-                    (castable ? "; a cast would convert it" : ""));
+        const bool castable =
+            is_triple(wanted) && (c[Type::Color] != no_cost || c[Type::Point] != no_cost ||
+                                  c[Type::Vector] != no_cost || c[Type::Normal] != no_cost);
+        fail(e, std::string(what) + " is " + std::string(type_name(wanted)) + ", but " + from +
+                    " is given" + (castable ? "; a cast would convert it" : ""));
         return;
     }
     settle(e, best_type);
@@ -462,13 +524,17 @@ Type Checker::deliver_any(Expr& e, bool prefer_float) {
 
 void Checker::settle(Expr& e, Type natural) {
     switch (e.kind) {
-    case ExprKind::Call: settle_call(e, natural); break;
+    case ExprKind::Call:
+        settle_call(e, natural);
+        break;
     case ExprKind::Ternary:
         deliver(*e.args[1], natural, "a value of '?'");
         deliver(*e.args[2], natural, "a value of '?'");
         e.type = natural;
         break;
-    default: e.type = natural; break;
+    default:
+        e.type = natural;
+        break;
     }
 }
 

@@ -19,28 +19,39 @@ void Checker::statements(const std::vector<ast::Stmt*>& list) {
 
 void Checker::statement(ast::Stmt& s) {
     switch (s.kind) {
-    case StmtKind::Empty: break;
+    case StmtKind::Empty:
+        break;
     case StmtKind::Block:
         scopes_.push(false);
         statements(s.body);
         scopes_.pop();
         break;
-    case StmtKind::Declare: declaration(s); break;
+    case StmtKind::Declare:
+        declaration(s);
+        break;
     case StmtKind::Extern:
         for (ast::Variable& v : s.variables) {
             declare_extern(v);
         }
         break;
-    case StmtKind::Expression: expression_statement(*s.exprs[0]); break;
+    case StmtKind::Expression:
+        expression_statement(*s.exprs[0]);
+        break;
     case StmtKind::If:
         condition(*s.exprs[0]);
         body(s, false);
         break;
     case StmtKind::While:
-    case StmtKind::For: loop(s); break;
+    case StmtKind::For:
+        loop(s);
+        break;
     case StmtKind::Break:
-    case StmtKind::Continue: jump(s); break;
-    case StmtKind::Return: return_statement(s); break;
+    case StmtKind::Continue:
+        jump(s);
+        break;
+    case StmtKind::Return:
+        return_statement(s);
+        break;
     case StmtKind::Solar:
         if (!s.exprs.empty()) {
             deliver(*s.exprs[0], Type::Vector, "the axis of 'solar'");
@@ -56,9 +67,15 @@ void Checker::statement(ast::Stmt& s) {
         }
         body(s, false);
         break;
-    case StmtKind::Illuminance: illuminance(s); break;
-    case StmtKind::Gather: gather(s); break;
-    case StmtKind::Function: check_function(*s.function); break;
+    case StmtKind::Illuminance:
+        illuminance(s);
+        break;
+    case StmtKind::Gather:
+        gather(s);
+        break;
+    case StmtKind::Function:
+        check_function(*s.function);
+        break;
     }
 }
 
@@ -80,7 +97,9 @@ void Checker::declaration(ast::Stmt& s) {
     }
 }
 
-void Checker::condition(Expr& e) { deliver(e, Type::Float, "a condition"); }
+void Checker::condition(Expr& e) {
+    deliver(e, Type::Float, "a condition");
+}
 
 void Checker::expression_statement(Expr& e) {
     if (e.kind == ExprKind::Assign) {
@@ -117,8 +136,9 @@ void Checker::jump(ast::Stmt& s) {
     if (loop_depth_ == 0) {
         messages_.error(s.loc, word + " outside a loop");
     } else if (s.levels > loop_depth_) {
-        messages_.error(s.loc, word + " names " + std::to_string(s.levels) + " loops, but there are only " +
-                                   std::to_string(loop_depth_) + " here");
+        messages_.error(s.loc, word + " names " + std::to_string(s.levels) +
+                                   " loops, but there are only " + std::to_string(loop_depth_) +
+                                   " here");
     }
     s.levels = std::min(s.levels, std::max(loop_depth_, 1));
 }
@@ -137,7 +157,8 @@ void Checker::return_statement(ast::Stmt& s) {
         return;
     }
     if (*function_->result == Type::Void) {
-        messages_.error(s.loc, "function " + quoted(function_->name) + " is void and returns no value");
+        messages_.error(s.loc,
+                        "function " + quoted(function_->name) + " is void and returns no value");
         return;
     }
     deliver(*s.exprs[0], *function_->result, "the value returned");
@@ -146,8 +167,8 @@ void Checker::return_statement(ast::Stmt& s) {
 // illum-args: the type of the first argument tells (category, P) from (P, axis, angle), note 11.
 void Checker::illuminance(ast::Stmt& s) {
     const auto is_text = [&](std::size_t i) {
-        return i < s.exprs.size() && array_of(*s.exprs[i]) == nullptr && !costs(*s.exprs[i]).failed &&
-               costs(*s.exprs[i])[Type::String] != ast::no_cost;
+        return i < s.exprs.size() && array_of(*s.exprs[i]) == nullptr &&
+               !costs(*s.exprs[i]).failed && costs(*s.exprs[i])[Type::String] != ast::no_cost;
     };
     std::size_t next = 0;
     s.has_category = is_text(0);
@@ -173,7 +194,9 @@ void Checker::illuminance(ast::Stmt& s) {
 
 void Checker::gather(ast::Stmt& s) {
     if (s.exprs.size() < 5) {
-        messages_.error(s.loc, "'gather' takes a category, a position, a direction, an angle and a number of samples");
+        messages_.error(
+            s.loc,
+            "'gather' takes a category, a position, a direction, an angle and a number of samples");
         return;
     }
     deliver(*s.exprs[0], Type::String, "the category of 'gather'");
@@ -185,7 +208,8 @@ void Checker::gather(ast::Stmt& s) {
     body(s, true);
 }
 
-// Name/value pairs. Names with a colon ask for a value ("light:x", "surface:Ci"), except "send:...".
+// Name/value pairs. Names with a colon ask for a value ("light:x", "surface:Ci"), except
+// "send:...".
 void Checker::options(ast::Stmt& s, std::size_t first, bool outputs_by_default) {
     if ((s.exprs.size() - first) % 2 != 0) {
         messages_.error(s.exprs.back()->loc, "options come in pairs of a name and a value");
@@ -200,15 +224,17 @@ void Checker::options(ast::Stmt& s, std::size_t first, bool outputs_by_default) 
             continue;
         }
         const bool sends = name.text.starts_with("send:");
-        const bool is_output = !sends && (name.text.starts_with("light:") ||
-                                          (outputs_by_default && name.text.find(':') != std::string::npos));
+        const bool is_output =
+            !sends && (name.text.starts_with("light:") ||
+                       (outputs_by_default && name.text.find(':') != std::string::npos));
         const bool is_array = array_of(value) != nullptr;
         if (!is_array) {
             deliver_any(value, true);
         }
         if (is_output) {
             if (value.kind != ExprKind::Name || value.symbol == nullptr) {
-                messages_.error(value.loc, "option " + quoted(name.text) + " needs a variable to set");
+                messages_.error(value.loc,
+                                "option " + quoted(name.text) + " needs a variable to set");
             } else {
                 mark_assigned(value);
             }

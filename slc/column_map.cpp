@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Columns of the original line for tokens of the preprocessed one. The preprocessor keeps lines but not spacing, and
-// puts macro bodies in place of names; the longest common subsequence of both lines' words tells which tokens
-// were written there and which came out of a macro.
+// Columns of the original line for tokens of the preprocessed one. The preprocessor keeps lines but
+// not spacing, and puts macro bodies in place of names; the longest common subsequence of both
+// lines' words tells which tokens were written there and which came out of a macro.
 #include "slc/lex.h"
 
 #include <algorithm>
@@ -11,14 +11,17 @@ namespace slc {
 
 namespace {
 
-constexpr std::size_t max_cells = 200'000; // of the table; longer lines keep their preprocessed columns
+constexpr std::size_t max_cells =
+    200'000; // of the table; longer lines keep their preprocessed columns
 
 struct Word {
     std::string_view text;
     std::uint32_t col;
 };
 
-bool is_word_char(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
+bool is_word_char(char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+}
 
 std::size_t word_length(std::string_view s) {
     if (s[0] == '"') {
@@ -29,7 +32,8 @@ std::size_t word_length(std::string_view s) {
         return std::min(i + 1, s.size());
     }
     if (!is_word_char(s[0])) {
-        return s.size() > 1 && s[1] == '=' && std::string_view("+-*/=!<>").find(s[0]) != std::string_view::npos
+        return s.size() > 1 && s[1] == '=' &&
+                       std::string_view("+-*/=!<>").find(s[0]) != std::string_view::npos
                    ? 2
                    : (s.starts_with("&&") || s.starts_with("||") ? 2 : 1);
     }
@@ -94,7 +98,8 @@ void align(Token* tokens, std::size_t n, const std::vector<Word>& words) {
             ++j;
         }
         const std::size_t at = std::min(j, m - 1);
-        tokens[i].loc.col = words[at].col; // unmatched: the macro name, which is the next unmatched word
+        tokens[i].loc.col =
+            words[at].col; // unmatched: the macro name, which is the next unmatched word
         if (j < m && same(tokens[i], words[j])) {
             ++j;
         }

@@ -15,7 +15,9 @@ namespace {
 
 // One compilation: the sources and messages all stages share.
 struct Session {
-    Session(base::Diag& diag, const std::string& name) : messages(diag, sources) { sources.add(name); }
+    Session(base::Diag& diag, const std::string& name) : messages(diag, sources) {
+        sources.add(name);
+    }
     Sources sources;
     Messages messages;
 };
@@ -29,8 +31,8 @@ std::optional<std::string> read_or_complain(const std::string& path, Messages& m
 }
 
 // Preprocessed text to a checked tree; nullptr when there is nothing to go on with.
-std::optional<std::string> preprocessed(std::string_view raw, const std::string& name, const CompileOptions& options,
-                                        Session& session) {
+std::optional<std::string> preprocessed(std::string_view raw, const std::string& name,
+                                        const CompileOptions& options, Session& session) {
     std::string text = normalise_text(raw);
     session.sources.set_text(0, text);
     return preprocess(text, name, options, session.messages);
@@ -40,14 +42,16 @@ std::unique_ptr<ast::File> checked_tree(const std::string& text, Session& sessio
     TokenList list = lex(text, session.messages);
     map_columns(list.tokens, session.sources);
     auto file = parse(list.tokens, session.messages);
-    // Names and types of a file with syntax errors are still worth checking, but not after the limit.
+    // Names and types of a file with syntax errors are still worth checking, but not after the
+    // limit.
     if (!session.messages.too_many()) {
         check(*file, session.messages);
     }
     return file;
 }
 
-Unit lowered(const ast::File& file, const CompileOptions& options, bool with_passes, Session& session) {
+Unit lowered(const ast::File& file, const CompileOptions& options, bool with_passes,
+             Session& session) {
     Unit unit;
     for (const ast::Definition& d : file.definitions) {
         if (d.shader == nullptr || session.messages.num_errors() != 0) {
@@ -66,8 +70,8 @@ Unit lowered(const ast::File& file, const CompileOptions& options, bool with_pas
     return unit;
 }
 
-Unit build(std::string_view raw, const std::string& name, const CompileOptions& options, bool with_passes,
-           Session& session) {
+Unit build(std::string_view raw, const std::string& name, const CompileOptions& options,
+           bool with_passes, Session& session) {
     Unit unit;
     if (const auto text = preprocessed(raw, name, options, session)) {
         const auto file = checked_tree(*text, session);
@@ -77,7 +81,8 @@ Unit build(std::string_view raw, const std::string& name, const CompileOptions& 
     return unit;
 }
 
-Unit build_file(const std::string& path, const CompileOptions& options, bool with_passes, base::Diag& diag) {
+Unit build_file(const std::string& path, const CompileOptions& options, bool with_passes,
+                base::Diag& diag) {
     Session session(diag, path);
     const auto raw = read_or_complain(path, session.messages);
     if (!raw) {
@@ -94,7 +99,8 @@ Unit compile_file(const std::string& path, const CompileOptions& options, base::
     return build_file(path, options, true, diag);
 }
 
-Unit compile_text(std::string_view text, const std::string& name, const CompileOptions& options, base::Diag& diag) {
+Unit compile_text(std::string_view text, const std::string& name, const CompileOptions& options,
+                  base::Diag& diag) {
     Session session(diag, name);
     return build(text, name, options, true, session);
 }
@@ -103,12 +109,14 @@ Unit front_end_file(const std::string& path, const CompileOptions& options, base
     return build_file(path, options, false, diag);
 }
 
-Unit front_end_text(std::string_view text, const std::string& name, const CompileOptions& options, base::Diag& diag) {
+Unit front_end_text(std::string_view text, const std::string& name, const CompileOptions& options,
+                    base::Diag& diag) {
     Session session(diag, name);
     return build(text, name, options, false, session);
 }
 
-std::optional<std::string> preprocess_file(const std::string& path, const CompileOptions& options, base::Diag& diag) {
+std::optional<std::string> preprocess_file(const std::string& path, const CompileOptions& options,
+                                           base::Diag& diag) {
     Session session(diag, path);
     const auto raw = read_or_complain(path, session.messages);
     return raw ? preprocessed(*raw, path, options, session) : std::nullopt;
@@ -124,8 +132,8 @@ std::optional<DumpKind> dump_kind(std::string_view name) {
     return std::nullopt;
 }
 
-std::optional<std::string> dump_file(const std::string& path, DumpKind kind, const CompileOptions& options,
-                                     base::Diag& diag) {
+std::optional<std::string> dump_file(const std::string& path, DumpKind kind,
+                                     const CompileOptions& options, base::Diag& diag) {
     Session session(diag, path);
     const auto raw = read_or_complain(path, session.messages);
     const auto text = raw ? preprocessed(*raw, path, options, session) : std::nullopt;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the engine wants to know of a shader: needed, written and auxiliary variables, and SL_FACT_*.
-// Needs: pass_detail (auxiliary slice). Changes nothing.
+// What the engine wants to know of a shader: needed, written and auxiliary variables, and
+// SL_FACT_*. Needs: pass_detail (auxiliary slice). Changes nothing.
 #include "slc/compiler.h"
 #include "slc/ir_util.h"
 #include "slc/liveness.h"
@@ -22,12 +22,14 @@ private:
     void block(const Block& b);
     void statement(const Stmt& s);
     void call(const Stmt& s);
-    void writes(const Stmt& s);
+    void opacity(const Stmt& s);
     void explain(const Stmt& s);
     void reason(int variable, const Stmt& s, const std::string& by);
     [[nodiscard]] bool names_object_space(const Stmt& s) const;
     [[nodiscard]] bool copies_Os(const Stmt& s) const;
-    [[nodiscard]] const Var& var(VarId id) const { return program_.vars[static_cast<std::size_t>(id)]; }
+    [[nodiscard]] const Var& var(VarId id) const {
+        return program_.vars[static_cast<std::size_t>(id)];
+    }
     [[nodiscard]] bool is_light() const { return program_.shader_type == SL_SHADER_light; }
 
     const Program& program_;
@@ -36,24 +38,21 @@ private:
     std::uint64_t explained_ = 0;
 };
 
-constexpr std::uint64_t bit(int variable) { return 1ull << variable; }
+constexpr std::uint64_t bit(int variable) {
+    return 1ull << variable;
+}
 constexpr std::uint64_t light_bits = bit(SL_VAR_L) | bit(SL_VAR_Cl) | bit(SL_VAR_Ol);
 
 Facts Analysis::run() {
-    block(program_.body);
-    facts_.needed = live_.at_entry().globals();
-    facts_.needed_aux = (facts_.facts & SL_FACT_area_operators) != 0 ? aux_.at_entry().globals() : 0;
-    // Inside light statements L, Cl and Ol are the statement's; elsewhere only a light shader has Cl and Ol.
+    // Inside light statements L, Cl and Ol are the statement's; elsewhere only a light shader has
+    // Cl and Ol.
     const std::uint64_t local = is_light() ? bit(SL_VAR_L) : light_bits;
-    facts_.needed &= ~local;
-    facts_.needed_aux &= ~light_bits;
-    if (!is_light()) {
-        facts_.written &= ~light_bits;
+    facts_.needed = live_.at_entry().globals() & ~local;
+    facts_.written = written_globals(program_, program_.body) & ~(is_light() ? 0 : light_bits);
+    block(program_.body);
+    if ((facts_.facts & SL_FACT_area_operators) != 0) {
+        facts_.needed_aux = aux_.at_entry().globals() & ~light_bits;
     }
-    // A result that is never written keeps what the engine has; it need not be handed in.
-    const std::uint64_t results = bit(SL_VAR_Ci) | bit(SL_VAR_Oi) | bit(SL_VAR_alpha) | bit(SL_VAR_Cl) | bit(SL_VAR_Ol) |
-                                  bit(SL_VAR_P) | bit(SL_VAR_N);
-    facts_.needed &= ~(results & ~facts_.written & ~explained_);
     return std::move(facts_);
 }
 
@@ -64,19 +63,28 @@ void Analysis::block(const Block& b) {
 }
 
 void Analysis::statement(const Stmt& s) {
-    // Every statement counts, even one pass_dead_code would remove: unoptimised programs still run it.
+    // Every statement counts, even one pass_dead_code would remove: unoptimised programs still run
+    // it.
     switch (s.op) {
-    case Op::Call: call(s); break;
-    case Op::Illuminance: facts_.facts |= SL_FACT_lights; break;
-    case Op::Solar: facts_.facts |= SL_FACT_solar; [[fallthrough]];
+    case Op::Call:
+        call(s);
+        break;
+    case Op::Illuminance:
+        facts_.facts |= SL_FACT_lights;
+        break;
+    case Op::Solar:
+        facts_.facts |= SL_FACT_solar;
+        [[fallthrough]];
     case Op::Illuminate:
         facts_.facts |= SL_FACT_directional;
-        facts_.written |= bit(SL_VAR_L) | bit(SL_VAR_Cl);
         break;
-    case Op::Gather: facts_.facts |= SL_FACT_traces; break;
-    default: break;
+    case Op::Gather:
+        facts_.facts |= SL_FACT_traces;
+        break;
+    default:
+        break;
     }
-    writes(s);
+    opacity(s);
     explain(s);
     for (const Block& b : s.bodies) {
         block(b);
@@ -87,8 +95,9 @@ void Analysis::call(const Stmt& s) {
     static constexpr struct {
         Property property;
         std::uint32_t fact;
-    } facts[] = {{PropLights, SL_FACT_lights},       {PropArea, SL_FACT_area_operators}, {PropTraces, SL_FACT_traces},
-                 {PropTextures, SL_FACT_textures},   {PropState, SL_FACT_attributes},    {PropRandom, SL_FACT_random}};
+    } facts[] = {{PropLights, SL_FACT_lights},    {PropArea, SL_FACT_area_operators},
+                 {PropTraces, SL_FACT_traces},    {PropTextures, SL_FACT_textures},
+                 {PropState, SL_FACT_attributes}, {PropRandom, SL_FACT_random}};
     const BuiltinRow& row = builtin_of(s);
     for (const auto& f : facts) {
         facts_.facts |= row.has(f.property) ? f.fact : 0;
@@ -110,30 +119,32 @@ bool Analysis::names_object_space(const Stmt& s) const {
 }
 
 bool Analysis::copies_Os(const Stmt& s) const {
-    return s.op == Op::Copy && var(s.args[0]).kind == VarKind::Global && var(s.args[0]).index == SL_VAR_Os;
+    return s.op == Op::Copy && var(s.args[0]).kind == VarKind::Global &&
+           var(s.args[0]).index == SL_VAR_Os;
 }
 
-void Analysis::writes(const Stmt& s) {
+void Analysis::opacity(const Stmt& s) {
     for_each_write(s, [&](VarId id, bool) {
         if (var(id).kind != VarKind::Global) {
             return;
         }
-        facts_.written |= bit(var(id).index);
         // Oi = Os leaves the opacity the primitive has.
-        const bool changes_opacity = (var(id).index == SL_VAR_Oi && !copies_Os(s)) || var(id).index == SL_VAR_Os;
+        const bool changes_opacity =
+            (var(id).index == SL_VAR_Oi && !copies_Os(s)) || var(id).index == SL_VAR_Os;
         facts_.facts |= changes_opacity ? SL_FACT_writes_opacity : 0;
     });
 }
 
 void Analysis::reason(int variable, const Stmt& s, const std::string& by) {
-    const bool wanted = (live_.at_entry().globals() & bit(variable)) != 0;
-    if (!wanted || (explained_ & bit(variable)) != 0) {
+    if ((facts_.needed & bit(variable)) == 0 || (explained_ & bit(variable)) != 0) {
         return;
     }
     explained_ |= bit(variable);
-    const std::string file = s.loc.file < program_.files.size() ? program_.files[s.loc.file] : std::string("?");
-    facts_.reasons.push_back(std::string(variable_rows()[static_cast<std::size_t>(variable)].name) + ": " + by + " at " +
-                             file + ":" + std::to_string(s.loc.line) + ":" + std::to_string(s.loc.col));
+    const std::string file =
+        s.loc.file < program_.files.size() ? program_.files[s.loc.file] : std::string("?");
+    facts_.reasons.push_back(std::string(variable_rows()[static_cast<std::size_t>(variable)].name) +
+                             ": " + by + " at " + file + ":" + std::to_string(s.loc.line) + ":" +
+                             std::to_string(s.loc.col));
 }
 
 // The first statement that matters and reads the variable.
@@ -156,14 +167,18 @@ void Analysis::explain(const Stmt& s) {
 std::string names_of(std::uint64_t mask) {
     std::string out;
     for (int i = 0; i < SL_VAR_COUNT; ++i) {
-        out += (mask >> i & 1) != 0 ? " " + std::string(variable_rows()[static_cast<std::size_t>(i)].name) : "";
+        out += (mask >> i & 1) != 0
+                   ? " " + std::string(variable_rows()[static_cast<std::size_t>(i)].name)
+                   : "";
     }
     return out;
 }
 
 } // namespace
 
-Facts analyse(const Program& program) { return Analysis(program).run(); }
+Facts analyse(const Program& program) {
+    return Analysis(program).run();
+}
 
 std::string facts_text(const Program& program, const Facts& facts) {
     static constexpr struct {
@@ -180,7 +195,8 @@ std::string facts_text(const Program& program, const Facts& facts) {
                  {SL_FACT_random, "random"},
                  {SL_FACT_solar, "solar"},
                  {SL_FACT_writes_opacity, "writes_opacity"}};
-    std::string out = std::string(shader_type_name(program.shader_type)) + " " + program.name + "\n";
+    std::string out =
+        std::string(shader_type_name(program.shader_type)) + " " + program.name + "\n";
     out += "needed:" + names_of(facts.needed) + "\nwritten:" + names_of(facts.written) +
            "\nneeded_aux:" + names_of(facts.needed_aux) + "\nfacts:";
     for (const auto& n : names) {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The typed, structured intermediate form of one shader, after user functions have been inlined.
-// A shader is a table of variables and a tree of statements. Every operand is a variable (constants are variables of
-// kind Const), every statement has at most one result, control flow is structured (If, Loop, Scope and the light
-// statements hold bodies), so that masks, slices and suspension points can be found by walking it.
-// The text form (ir_text.h) prints and parses back to the same program.
+// A shader is a table of variables and a tree of statements. Every operand is a variable (constants
+// are variables of kind Const), every statement has at most one result, control flow is structured
+// (If, Loop, Scope and the light statements hold bodies), so that masks, slices and suspension
+// points can be found by walking it. The text form (ir_text.h) prints and parses back to the same
+// program.
 #pragma once
 
 #include "runtime/abi/sl_abi.h"
@@ -14,13 +15,27 @@
 
 namespace slc {
 
-enum class Type : std::uint8_t { Void, Float, Color, Point, Vector, Normal, Matrix, String }; // = sl_type
-enum class Detail : std::uint8_t { Uniform, Varying };                                        // = sl_detail
+enum class Type : std::uint8_t {
+    Void,
+    Float,
+    Color,
+    Point,
+    Vector,
+    Normal,
+    Matrix,
+    String
+};                                                     // = sl_type
+enum class Detail : std::uint8_t { Uniform, Varying }; // = sl_detail
 
 constexpr int num_components(Type t) {
-    return t == Type::Void ? 0 : t == Type::Float || t == Type::String ? 1 : t == Type::Matrix ? 16 : 3;
+    return t == Type::Void                         ? 0
+           : t == Type::Float || t == Type::String ? 1
+           : t == Type::Matrix                     ? 16
+                                                   : 3;
 }
-constexpr bool is_triple(Type t) { return t >= Type::Color && t <= Type::Normal; }
+constexpr bool is_triple(Type t) {
+    return t >= Type::Color && t <= Type::Normal;
+}
 
 struct Loc {
     std::uint32_t file = 0; // index into Program::files
@@ -29,26 +44,29 @@ struct Loc {
 };
 
 enum class VarKind : std::uint8_t {
-    Const,    // literal; values or text hold it; always uniform
-    Param,    // shader parameter, index = position in the parameter list
-    Global,   // predefined shader variable, index = sl_variable
-    Local,    // declared by the user (inlined functions' formals and locals included)
-    Temp      // made by lowering or a pass; assigned in one place
+    Const,  // literal; values or text hold it; always uniform
+    Param,  // shader parameter, index = position in the parameter list
+    Global, // predefined shader variable, index = sl_variable
+    Local,  // declared by the user (inlined functions' formals and locals included)
+    Temp    // made by lowering or a pass; assigned in one place
 };
 
 struct Var {
-    std::string name; // unique in the program; Temps are t1, t2, ...; a Global that a parameter hides has another name
+    std::string name; // unique in the program; Temps are t1, t2, ...; a Global that a parameter
+                      // hides has another name
     Type type = Type::Float;
-    Detail detail = Detail::Varying; // Locals and Temps: result of the uniform/varying inference. A uniform
-                                     // variable is assigned only uniform values; Locals only under uniform control,
-                                     // Temps anywhere (they are read only where they were made).
-    int array_length = 0;            // 0: not an array
+    Detail detail =
+        Detail::Varying; // Locals and Temps: result of the uniform/varying inference. A uniform
+                         // variable is assigned only uniform values; Locals only under uniform
+                         // control, Temps anywhere (they are read only where they were made).
+    int array_length = 0; // 0: not an array
     VarKind kind = VarKind::Temp;
     int index = -1;
-    bool is_output = false;          // Param
-    bool declared_uniform = false;   // the user wrote `uniform`; if it gets varying values it is varying all the same
-    std::vector<float> values;       // Const: components (arrays: all elements)
-    std::string text;                // Const string
+    bool is_output = false; // Param
+    bool declared_uniform =
+        false; // the user wrote `uniform`; if it gets varying values it is varying all the same
+    std::vector<float> values; // Const: components (arrays: all elements)
+    std::string text;          // Const string
     Loc loc;
 };
 
@@ -56,35 +74,55 @@ using VarId = std::int32_t; // index into Program::vars
 constexpr VarId no_var = -1;
 
 enum class Op : std::uint8_t {
-    // dst = op(args). Numeric operands may differ in type: a float operand of a triple operation is spread. dst may
-    // also be one of the args: all of them are read before it is written. Arguments of statements with bodies are
+    // dst = op(args). Numeric operands may differ in type: a float operand of a triple operation is
+    // spread. dst may
+    // also be one of the args: all of them are read before it is written. Arguments of statements
+    // with bodies are
     // read once, before the bodies run (a Loop's condition: each time, after bodies[0]).
-    Copy,       // dst = a; converts float->triple (spread), float->matrix (diagonal), P/V/N/C by component;
-                // dst array: a is an array of the same length, or one value given to every element
-    Add, Sub, Mul, Div, Neg, // component-wise; Matrix: Mul, Div (a * inverse(b)); both operands matrices
-    Dot, Cross,
-    Eq, Ne, Lt, Le, Gt, Ge,  // float 0/1; triples: all components (Ne: any); Eq, Ne also matrix and string
-    And, Or, Not,            // of floats; both operands are already evaluated
-    Select,     // dst = a != 0 ? b : c; b and c have the class of dst (float, triple, matrix, string)
-    Triple,     // dst = (a, b, c)
-    Matrix16,   // dst = 16 floats
-    Component,  // dst = component (args[1] constant or float) of triple args[0]
-    Load,       // dst = array args[0] [ args[1] ]; index truncated toward zero, clamped to the array
-    Store,      // array dst [ args[0] ] = args[1]
-    Call,       // dst (or none) = builtin row `builtin`(args); output arguments are assigned in place. Arguments
-                // are already of the class the row wants (float, triple, matrix, string); rows with SL_CHANNEL
-                // have the channel (float) after the name; then repetitions (+), name/value pairs (*)
+    Copy, // dst = a; converts float->triple (spread), float->matrix (diagonal), P/V/N/C by
+          // component;
+          // dst array: a is an array of the same length, or one value given to every element
+    Add,
+    Sub,
+    Mul,
+    Div,
+    Neg, // component-wise; Matrix: Mul, Div (a * inverse(b)); both operands matrices
+    Dot,
+    Cross,
+    Eq,
+    Ne,
+    Lt,
+    Le,
+    Gt,
+    Ge, // float 0/1; triples: all components (Ne: any); Eq, Ne also matrix and string
+    And,
+    Or,
+    Not,      // of floats; both operands are already evaluated
+    Select,   // dst = a != 0 ? b : c; b and c have the class of dst (float, triple, matrix, string)
+    Triple,   // dst = (a, b, c)
+    Matrix16, // dst = 16 floats
+    Component, // dst = component (args[1] constant or float) of triple args[0]
+    Load,      // dst = array args[0] [ args[1] ]; index truncated toward zero, clamped to the array
+    Store,     // array dst [ args[0] ] = args[1]
+    Call, // dst (or none) = builtin row `builtin`(args); output arguments are assigned in place.
+          // Arguments
+    // are already of the class the row wants (float, triple, matrix, string); rows with SL_CHANNEL
+    // have the channel (float) after the name; then repetitions (+), name/value pairs (*)
     // control; bodies as noted
-    If,         // args[0] condition; bodies[0] then, bodies[1] else (may be empty)
-    Loop,       // bodies[0] computes the condition args[0]; bodies[1] the body; bodies[2] the step (Continue goes there)
-    Break,      // leaves `levels` enclosing loops (Loop, Illuminance, Gather)
-    Continue,   // leaves levels-1 loops, continues the next
-    Scope,      // bodies[0]; Leave inside ends it (inlined function with early return, or the shader body)
-    Leave,      // ends the `levels`-th enclosing Scope for the lanes that get here
-    Illuminance, // args: P [, axis, angle]; category in args of name `category`: see has_*; bodies[0]
-    Illuminate, // args: from [, axis, angle]; bodies[0]
-    Solar,      // args: [axis, angle]; bodies[0]
-    Gather      // args: category, P, direction, angle, samples; options as pairs; bodies[0] hit, bodies[1] miss
+    If,       // args[0] condition; bodies[0] then, bodies[1] else (may be empty)
+    Loop,     // bodies[0] computes the condition args[0]; bodies[1] the body; bodies[2] the step
+              // (Continue goes there)
+    Break,    // leaves `levels` enclosing loops (Loop, Illuminance, Gather)
+    Continue, // leaves levels-1 loops, continues the next
+    Scope,    // bodies[0]; Leave inside ends it (inlined function with early return, or the shader
+              // body)
+    Leave,    // ends the `levels`-th enclosing Scope for the lanes that get here
+    Illuminance, // args: P [, axis, angle]; category in args of name `category`: see has_*;
+                 // bodies[0]
+    Illuminate,  // args: from [, axis, angle]; bodies[0]
+    Solar,       // args: [axis, angle]; bodies[0]
+    Gather       // args: category, P, direction, angle, samples; options as pairs; bodies[0] hit,
+                 // bodies[1] miss
 };
 
 struct Stmt {
@@ -94,7 +132,8 @@ struct Stmt {
     int builtin = -1;        // Call, Gather: row in sl_builtins.def
     int levels = 1;          // Break, Continue, Leave
     VarId category = no_var; // Illuminance: string operand, or no_var
-    // Illuminance options as pairs: "lightcache", "light:x" (variable that is set), "send:light:x"; Gather alike
+    // Illuminance options as pairs: "lightcache", "light:x" (variable that is set), "send:light:x";
+    // Gather alike
     std::vector<std::pair<std::string, VarId>> options;
     std::vector<std::vector<Stmt>> bodies;
     Loc loc;
@@ -118,10 +157,10 @@ struct Program {
 
 // What the analyses found; side tables, never stored in the program.
 struct Facts {
-    std::uint64_t needed = 0;      // bits 1 << sl_variable: must be filled before the shader runs
+    std::uint64_t needed = 0; // bits 1 << sl_variable: must be filled before the shader runs
     std::uint64_t written = 0;
-    std::uint64_t needed_aux = 0;  // at the auxiliary points (area operators)
-    std::uint32_t facts = 0;       // SL_FACT_*
+    std::uint64_t needed_aux = 0;     // at the auxiliary points (area operators)
+    std::uint32_t facts = 0;          // SL_FACT_*
     std::vector<std::string> reasons; // for --explain: one line per needed variable
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// IR text back to a Program; the format is shown in ir_print.cpp. Line and word oriented; stops at the first error.
+// IR text back to a Program; the format is shown in ir_print.cpp. Line and word oriented; stops at
+// the first error.
 #include "slc/ir_text.h"
 #include "slc/ir_util.h"
 
@@ -61,7 +62,8 @@ void IrParser::fail(const std::string& what) {
 }
 
 void IrParser::skip_space() {
-    while (pos_ < text_.size() && (text_[pos_] == ' ' || text_[pos_] == '\n' || text_[pos_] == '\r' || text_[pos_] == '\t')) {
+    while (pos_ < text_.size() && (text_[pos_] == ' ' || text_[pos_] == '\n' ||
+                                   text_[pos_] == '\r' || text_[pos_] == '\t')) {
         line_ += text_[pos_] == '\n' ? 1 : 0;
         ++pos_;
     }
@@ -84,7 +86,8 @@ Word IrParser::word() {
         return {std::string(1, text_[pos_++]), false};
     }
     const std::size_t start = pos_;
-    while (pos_ < text_.size() && std::string_view(" \t\r\n\"{}").find(text_[pos_]) == std::string_view::npos) {
+    while (pos_ < text_.size() &&
+           std::string_view(" \t\r\n\"{}").find(text_[pos_]) == std::string_view::npos) {
         ++pos_;
     }
     return {std::string(text_.substr(start, pos_ - start)), false};
@@ -98,7 +101,8 @@ std::string IrParser::string() {
         if (c == '\\' && pos_ < text_.size()) {
             c = text_[pos_++];
             if (c >= '0' && c <= '7' && pos_ + 2 <= text_.size()) {
-                c = static_cast<char>((c - '0') * 64 + (text_[pos_] - '0') * 8 + (text_[pos_ + 1] - '0'));
+                c = static_cast<char>((c - '0') * 64 + (text_[pos_] - '0') * 8 +
+                                      (text_[pos_ + 1] - '0'));
                 pos_ += 2;
             }
         }
@@ -187,7 +191,8 @@ std::optional<Program> IrParser::run() {
 void IrParser::header() {
     const std::string w = plain();
     int type = SL_SHADER_surface;
-    while (type <= SL_SHADER_transformation && shader_type_name(static_cast<sl_shader_type>(type)) != w) {
+    while (type <= SL_SHADER_transformation &&
+           shader_type_name(static_cast<sl_shader_type>(type)) != w) {
         ++type;
     }
     if (type > SL_SHADER_transformation) {
@@ -304,7 +309,8 @@ Stmt IrParser::statement() {
         const std::string signature = word().text;
         const auto rows = builtin_rows();
         for (std::size_t i = 0; i < rows.size() && s.builtin < 0; ++i) {
-            s.builtin = rows[i].name == called && rows[i].signature == signature ? static_cast<int>(i) : -1;
+            s.builtin =
+                rows[i].name == called && rows[i].signature == signature ? static_cast<int>(i) : -1;
         }
         if (s.builtin < 0) {
             fail("unknown built-in " + called + " " + signature);
@@ -320,13 +326,14 @@ Stmt IrParser::statement() {
     return s;
 }
 
-// A variable name; "levels n"; "category name"; "option "x" name". Variables may be called like these words, so the
-// meaning goes by the operation.
+// A variable name; "levels n"; "category name"; "option "x" name". Variables may be called like
+// these words, so the meaning goes by the operation.
 void IrParser::operands(Stmt& s, const Word& w) {
     const bool is_light = s.op == Op::Illuminance || s.op == Op::Gather;
     if (w.is("levels") && (s.op == Op::Break || s.op == Op::Continue || s.op == Op::Leave)) {
         s.levels = number();
-    } else if (w.is("category") && is_light && s.category == no_var && !s.args.empty() && !at('@')) {
+    } else if (w.is("category") && is_light && s.category == no_var && !s.args.empty() &&
+               !at('@')) {
         s.category = name();
     } else if (w.is("option") && is_light && at('"')) {
         std::string option = word().text;
@@ -342,6 +349,8 @@ void IrParser::operands(Stmt& s, const Word& w) {
 
 } // namespace
 
-std::optional<Program> parse_ir(std::string_view text, std::string& error) { return IrParser(text, error).run(); }
+std::optional<Program> parse_ir(std::string_view text, std::string& error) {
+    return IrParser(text, error).run();
+}
 
 } // namespace slc

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// IR to text. One line per variable and statement; blocks in braces; every line ends with its place.
+// IR to text. One line per variable and statement; blocks in braces; every line ends with its
+// place.
 //   surface "matte"
 //   file "matte.sl"
 //   var Kd param uniform float index 1 @0:3:20
@@ -33,12 +34,10 @@ private:
     void variable(const Var& v);
     void block(const Block& block);
     void statement(const Stmt& s);
-    void name(VarId id) {
-        const bool known = id >= 0 && static_cast<std::size_t>(id) < program_.vars.size();
-        out_ += known ? " " + program_.vars[static_cast<std::size_t>(id)].name : std::string(" ?");
-    }
+    void name(VarId id) { out_ += " " + program_.vars[static_cast<std::size_t>(id)].name; }
     void place(Loc loc) {
-        out_ += " @" + std::to_string(loc.file) + ":" + std::to_string(loc.line) + ":" + std::to_string(loc.col);
+        out_ += " @" + std::to_string(loc.file) + ":" + std::to_string(loc.line) + ":" +
+                std::to_string(loc.col);
     }
     void indent() { out_.append(static_cast<std::size_t>(2 * depth_), ' '); }
     void quote(std::string_view text);
@@ -140,8 +139,7 @@ void Printer::block(const Block& statements) {
 void Printer::statement(const Stmt& s) {
     indent();
     if (s.dst != no_var) {
-        name(s.dst);
-        out_ += " = ";
+        out_ += program_.vars[static_cast<std::size_t>(s.dst)].name + " = ";
     }
     out_ += op_info(s.op).text;
     if (s.op == Op::Call) {
@@ -175,6 +173,8 @@ void Printer::statement(const Stmt& s) {
 
 } // namespace
 
-std::string print_ir(const Program& program) { return Printer(program).run(); }
+std::string print_ir(const Program& program) {
+    return Printer(program).run();
+}
 
 } // namespace slc

@@ -23,7 +23,8 @@ bool option_is_output(const Stmt& s, std::string_view name) {
     if (name.starts_with("send:")) {
         return false;
     }
-    return s.op == Op::Gather ? name.find(':') != std::string_view::npos : name.starts_with("light:");
+    return s.op == Op::Gather ? name.find(':') != std::string_view::npos
+                              : name.starts_with("light:");
 }
 
 } // namespace slc

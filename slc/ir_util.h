@@ -24,25 +24,30 @@ struct OpInfo {
     return builtin_rows()[static_cast<std::size_t>(s.builtin)];
 }
 
-// Position in Stmt::args of argument i of the row's signature: the channel of texture functions is inserted.
+// Position in Stmt::args of argument i of the row's signature: the channel of texture functions is
+// inserted.
 [[nodiscard]] inline std::size_t arg_position(const BuiltinRow& row, std::size_t i) {
     return i + (row.has(PropChannel) && i > 0 ? 1 : 0);
 }
 
 // Values held the same way: float, triple, matrix, string.
-[[nodiscard]] inline bool same_class(Type a, Type b) { return a == b || (is_triple(a) && is_triple(b)); }
+[[nodiscard]] inline bool same_class(Type a, Type b) {
+    return a == b || (is_triple(a) && is_triple(b));
+}
 
-[[nodiscard]] inline bool is_loop(Op op) { return op == Op::Loop || op == Op::Illuminance || op == Op::Gather; }
+[[nodiscard]] inline bool is_loop(Op op) {
+    return op == Op::Loop || op == Op::Illuminance || op == Op::Gather;
+}
 
 // Options of light statements that set a variable: "light:x", "surface:Ci"; not "send:...".
 [[nodiscard]] bool option_is_output(const Stmt& s, std::string_view name);
 
-// Calls read(id) for every variable whose value the statement itself uses, bodies not included. Partly changed
-// arrays and output arguments that may keep their value count as read.
+// Calls read(id) for every variable whose value the statement itself uses, bodies not included.
+// Partly changed arrays and output arguments that may keep their value count as read.
 template <class F> void for_each_read(const Stmt& s, F read);
 
-// Calls write(id, whole) for every variable the statement itself assigns. `whole`: in every lane that gets there, and
-// all of it. Predefined variables that light statements set are not included.
+// Calls write(id, whole) for every variable the statement itself assigns. `whole`: in every lane
+// that gets there, and all of it. Predefined variables that light statements set are not included.
 template <class F> void for_each_write(const Stmt& s, F write);
 
 template <class F> void for_each_read(const Stmt& s, F read) {
@@ -54,7 +59,8 @@ template <class F> void for_each_read(const Stmt& s, F read) {
                    (!row.args[next_output].is_output || arg_position(row, next_output) < i)) {
                 ++next_output;
             }
-            const bool is_output = next_output < row.args.size() && arg_position(row, next_output) == i;
+            const bool is_output =
+                next_output < row.args.size() && arg_position(row, next_output) == i;
             if (!is_output || row.has(PropInout)) {
                 read(s.args[i]);
             }

@@ -18,7 +18,9 @@ private:
     [[nodiscard]] bool exists(VarId id) const {
         return id >= 0 && static_cast<std::size_t>(id) < program_.vars.size();
     }
-    [[nodiscard]] const Var& var(VarId id) const { return program_.vars[static_cast<std::size_t>(id)]; }
+    [[nodiscard]] const Var& var(VarId id) const {
+        return program_.vars[static_cast<std::size_t>(id)];
+    }
     void variables();
     void block(const Block& b, int loops, int scopes);
     void statement(const Stmt& s, int loops, int scopes);
@@ -35,7 +37,8 @@ private:
 
 void Verifier::complain(const Stmt& s, const std::string& what) {
     if (complaints_.size() < max_complaints) {
-        complaints_.push_back(std::string(op_info(s.op).text) + " at line " + std::to_string(s.loc.line) + ": " + what);
+        complaints_.push_back(std::string(op_info(s.op).text) + " at line " +
+                              std::to_string(s.loc.line) + ": " + what);
     }
 }
 
@@ -80,7 +83,8 @@ void Verifier::block(const Block& b, int loops, int scopes) {
 bool Verifier::shape(const Stmt& s) {
     const OpInfo& info = op_info(s.op);
     const int n = static_cast<int>(s.args.size());
-    bool ok = n >= info.min_args && n <= info.max_args && static_cast<int>(s.bodies.size()) == info.bodies;
+    bool ok = n >= info.min_args && n <= info.max_args &&
+              static_cast<int>(s.bodies.size()) == info.bodies;
     for (const VarId id : s.args) {
         ok = ok && exists(id);
     }
@@ -89,7 +93,8 @@ bool Verifier::shape(const Stmt& s) {
     }
     ok = ok && (s.category == no_var || exists(s.category));
     if (s.dst != no_var) {
-        ok = ok && exists(s.dst) && info.result != ResultUse::None && var(s.dst).kind != VarKind::Const;
+        ok = ok && exists(s.dst) && info.result != ResultUse::None &&
+             var(s.dst).kind != VarKind::Const;
     } else {
         ok = ok && (info.result == ResultUse::None || info.result == ResultUse::Optional);
     }
@@ -133,7 +138,8 @@ void Verifier::types(const Stmt& s) {
         const Var& to = var(s.dst);
         const Var& from = var(s.args[0]);
         ok = (from.array_length == 0 || from.array_length == to.array_length) &&
-             (same_class(from.type, to.type) || (from.type == Type::Float && to.type != Type::String));
+             (same_class(from.type, to.type) ||
+              (from.type == Type::Float && to.type != Type::String));
         break;
     }
     case Op::Add:
@@ -142,19 +148,29 @@ void Verifier::types(const Stmt& s) {
     case Op::Div: {
         const Type to = var(s.dst).type;
         for (std::size_t i = 0; i < 2; ++i) {
-            ok = ok && is_value(i) && (same_class(type(i), to) || (type(i) == Type::Float && is_triple(to)));
+            ok = ok && is_value(i) &&
+                 (same_class(type(i), to) || (type(i) == Type::Float && is_triple(to)));
         }
         ok = ok && to != Type::String && var(s.dst).array_length == 0;
         break;
     }
-    case Op::Neg: ok = is_value(0) && same_class(type(0), var(s.dst).type); break;
+    case Op::Neg:
+        ok = is_value(0) && same_class(type(0), var(s.dst).type);
+        break;
     case Op::Dot:
-    case Op::Cross: ok = is_triple(type(0)) && is_triple(type(1)); break;
+    case Op::Cross:
+        ok = is_triple(type(0)) && is_triple(type(1));
+        break;
     case Op::And:
-    case Op::Or: ok = type(0) == Type::Float && type(1) == Type::Float; break;
-    case Op::Not: ok = type(0) == Type::Float; break;
+    case Op::Or:
+        ok = type(0) == Type::Float && type(1) == Type::Float;
+        break;
+    case Op::Not:
+        ok = type(0) == Type::Float;
+        break;
     case Op::Select:
-        ok = type(0) == Type::Float && same_class(type(1), var(s.dst).type) && same_class(type(2), var(s.dst).type);
+        ok = type(0) == Type::Float && same_class(type(1), var(s.dst).type) &&
+             same_class(type(2), var(s.dst).type);
         break;
     case Op::Triple:
     case Op::Matrix16:
@@ -163,15 +179,22 @@ void Verifier::types(const Stmt& s) {
         }
         break;
     case Op::Load:
-        ok = !is_value(0) && same_class(type(0), var(s.dst).type) && type(1) == Type::Float && is_value(1);
+        ok = !is_value(0) && same_class(type(0), var(s.dst).type) && type(1) == Type::Float &&
+             is_value(1);
         break;
     case Op::Store:
-        ok = var(s.dst).array_length != 0 && type(0) == Type::Float && same_class(type(1), var(s.dst).type) && is_value(1);
+        ok = var(s.dst).array_length != 0 && type(0) == Type::Float &&
+             same_class(type(1), var(s.dst).type) && is_value(1);
         break;
     case Op::If:
-    case Op::Loop: ok = type(0) == Type::Float && is_value(0); break;
-    case Op::Call: call(s); break;
-    default: break;
+    case Op::Loop:
+        ok = type(0) == Type::Float && is_value(0);
+        break;
+    case Op::Call:
+        call(s);
+        break;
+    default:
+        break;
     }
     if (!ok) {
         complain(s, "operands of the wrong type");
@@ -200,20 +223,24 @@ void Verifier::call(const Stmt& s) {
     }
     for (std::size_t i = 0; i < row.args.size(); ++i) {
         if (!fits(s.args[arg_position(row, i)], row.args[i])) {
-            complain(s, "argument " + std::to_string(i + 1) + " of " + std::string(row.name) + " has the wrong type");
+            complain(s, "argument " + std::to_string(i + 1) + " of " + std::string(row.name) +
+                            " has the wrong type");
         }
     }
     for (std::size_t i = fixed; i < s.args.size() && row.repeats_last; ++i) {
         if (!fits(s.args[i], row.args.back())) {
-            complain(s, "argument " + std::to_string(i + 1) + " of " + std::string(row.name) + " has the wrong type");
+            complain(s, "argument " + std::to_string(i + 1) + " of " + std::string(row.name) +
+                            " has the wrong type");
         }
     }
-    if (s.dst != no_var && (row.result.type == Type::Void || !same_class(row.result.type, var(s.dst).type))) {
+    if (s.dst != no_var &&
+        (row.result.type == Type::Void || !same_class(row.result.type, var(s.dst).type))) {
         complain(s, "result of " + std::string(row.name) + " has the wrong type");
     }
 }
 
-// A uniform variable gets uniform values only. random() has one value for a uniform target (sl.md 4.1.3).
+// A uniform variable gets uniform values only. random() has one value for a uniform target
+// (sl.md 4.1.3).
 void Verifier::details(const Stmt& s) {
     const bool is_call = s.op == Op::Call;
     const bool is_random = is_call && builtin_of(s).has(PropRandom);
@@ -231,6 +258,8 @@ void Verifier::details(const Stmt& s) {
 
 } // namespace
 
-std::vector<std::string> verify_ir(const Program& program) { return Verifier(program).run(); }
+std::vector<std::string> verify_ir(const Program& program) {
+    return Verifier(program).run();
+}
 
 } // namespace slc

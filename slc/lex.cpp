@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One pass over the preprocessed text. Directive lines left by the preprocessor set the place or are skipped.
+// One pass over the preprocessed text. Directive lines left by the preprocessor set the place or
+// are skipped.
 #include "slc/lex.h"
 
 #include <array>
@@ -27,8 +28,12 @@ constexpr Spelling marks[] = {
 #include "slc/tokens.def"
 };
 
-bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_'; }
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_letter(char c) {
+    return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_';
+}
+bool is_digit(char c) {
+    return c >= '0' && c <= '9';
+}
 
 class Lexer {
 public:
@@ -90,11 +95,14 @@ TokenList Lexer::run() {
     return std::move(out_);
 }
 
-// "# 12 "file" 1", "#line 12 "file"": the place of the next line. Other directives (#pragma) are skipped.
+// "# 12 "file" 1", "#line 12 "file"": the place of the next line. Other directives (#pragma) are
+// skipped.
 void Lexer::directive() {
     const std::size_t end = std::min(text_.find('\n', pos_), text_.size());
     std::string_view rest = text_.substr(pos_ + 1, end - pos_ - 1);
-    const auto skip_blanks = [&] { rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size())); };
+    const auto skip_blanks = [&] {
+        rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size()));
+    };
     skip_blanks();
     if (rest.starts_with("line")) {
         rest.remove_prefix(4);
@@ -228,11 +236,16 @@ char Lexer::escape() {
     const char c = at();
     ++pos_;
     switch (c) {
-    case 'n': return '\n';
-    case 't': return '\t';
-    case 'r': return '\r';
-    case 'b': return '\b';
-    default: break;
+    case 'n':
+        return '\n';
+    case 't':
+        return '\t';
+    case 'r':
+        return '\r';
+    case 'b':
+        return '\b';
+    default:
+        break;
     }
     if (c < '0' || c > '7') {
         return c;
@@ -302,15 +315,22 @@ void Lexer::unexpected() {
 
 } // namespace
 
-TokenList lex(std::string_view text, Messages& messages) { return Lexer(text, messages).run(); }
+TokenList lex(std::string_view text, Messages& messages) {
+    return Lexer(text, messages).run();
+}
 
 std::string token_name(Tok kind) {
     switch (kind) {
-    case Tok::End: return "the end of the file";
-    case Tok::Name: return "a name";
-    case Tok::Number: return "a number";
-    case Tok::Text: return "a string";
-    default: break;
+    case Tok::End:
+        return "the end of the file";
+    case Tok::Name:
+        return "a name";
+    case Tok::Number:
+        return "a number";
+    case Tok::Text:
+        return "a string";
+    default:
+        break;
     }
     for (const Spelling& word : words) {
         if (word.kind == kind) {

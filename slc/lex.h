@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Preprocessed text to tokens with places in the original files (sl.md 1.1). The list always ends with Tok::End.
+// Preprocessed text to tokens with places in the original files (sl.md 1.1). The list always ends
+// with Tok::End.
 #pragma once
 
 #include "slc/ir.h"
@@ -43,8 +44,9 @@ constexpr std::size_t max_tokens = 4'000'000;
 [[nodiscard]] std::string token_name(Tok kind);
 [[nodiscard]] std::string dump_tokens(const std::vector<Token>& tokens, const Sources& sources);
 
-// Places refer to the preprocessed line so far, where spacing is lost and macros are expanded; finds the column
-// in the original line. A token that came out of a macro gets the column of what stands before it.
+// Places refer to the preprocessed line so far, where spacing is lost and macros are expanded;
+// finds the column in the original line. A token that came out of a macro gets the column of what
+// stands before it.
 void map_columns(std::vector<Token>& tokens, Sources& sources);
 
 } // namespace slc

@@ -25,7 +25,10 @@ std::uint64_t VarSet::globals() const {
     return mask;
 }
 
-Liveness::Liveness(const Program& program, LiveMode mode) : program_(program), mode_(mode), entry_(program) { solve(); }
+Liveness::Liveness(const Program& program, LiveMode mode)
+    : program_(program), mode_(mode), entry_(program) {
+    solve();
+}
 
 void Liveness::solve() {
     do {
@@ -38,23 +41,62 @@ void Liveness::solve() {
     } while (changed_);
 }
 
-// What the engine reads when the shader has ended: the results of its type that it writes, and output parameters.
+namespace {
+
+std::uint64_t results_of(sl_shader_type type) {
+    const auto bits = [](std::initializer_list<int> ids) {
+        std::uint64_t mask = 0;
+        for (const int id : ids) {
+            mask |= 1ull << id;
+        }
+        return mask;
+    };
+    switch (type) {
+    case SL_SHADER_surface:
+    case SL_SHADER_volume:
+        return bits({SL_VAR_Ci, SL_VAR_Oi});
+    case SL_SHADER_displacement:
+    case SL_SHADER_transformation:
+        return bits({SL_VAR_P, SL_VAR_N});
+    case SL_SHADER_light:
+        return bits({SL_VAR_L, SL_VAR_Cl, SL_VAR_Ol});
+    case SL_SHADER_imager:
+        return bits({SL_VAR_Ci, SL_VAR_Oi, SL_VAR_alpha});
+    }
+    return 0;
+}
+
+} // namespace
+
+std::uint64_t written_globals(const Program& program, const Block& b) {
+    std::uint64_t mask = 0;
+    for (const Stmt& s : b) {
+        for_each_write(s, [&](VarId id, bool) {
+            const Var& v = program.vars[static_cast<std::size_t>(id)];
+            mask |= v.kind == VarKind::Global ? 1ull << v.index : 0;
+        });
+        if (s.op == Op::Illuminate || s.op == Op::Solar) {
+            mask |= 1ull << SL_VAR_L | 1ull << SL_VAR_Cl;
+        }
+        for (const Block& inner : s.bodies) {
+            mask |= written_globals(program, inner);
+        }
+    }
+    return mask;
+}
+
+// What the engine reads when the shader has ended: the results of its type that it writes (the
+// others keep what the engine has), and output parameters.
 void Liveness::exit_set(VarSet& live) const {
     if (mode_ == LiveMode::Aux) {
         return;
     }
-    const auto add = [&](std::initializer_list<int> ids) {
-        for (const int id : ids) {
-            live.insert(live.global_slot(id));
+    const std::uint64_t results =
+        results_of(program_.shader_type) & written_globals(program_, program_.body);
+    for (int i = 0; i < SL_VAR_COUNT; ++i) {
+        if ((results >> i & 1) != 0) {
+            live.insert(live.global_slot(i));
         }
-    };
-    switch (program_.shader_type) {
-    case SL_SHADER_surface:
-    case SL_SHADER_volume: add({SL_VAR_Ci, SL_VAR_Oi}); break;
-    case SL_SHADER_displacement:
-    case SL_SHADER_transformation: add({SL_VAR_P, SL_VAR_N}); break;
-    case SL_SHADER_light: add({SL_VAR_L, SL_VAR_Cl, SL_VAR_Ol}); break;
-    case SL_SHADER_imager: add({SL_VAR_Ci, SL_VAR_Oi, SL_VAR_alpha}); break;
     }
     for (const Param& p : program_.params) {
         if (program_.vars[static_cast<std::size_t>(p.var)].is_output) {
@@ -71,11 +113,14 @@ void Liveness::keep(const Stmt& s) {
 
 bool Liveness::any_kept(const Stmt& s) const {
     return std::any_of(s.bodies.begin(), s.bodies.end(), [&](const Block& b) {
-        return std::any_of(b.begin(), b.end(), [&](const Stmt& inner) { return kept_.contains(&inner); });
+        return std::any_of(b.begin(), b.end(),
+                           [&](const Stmt& inner) { return kept_.contains(&inner); });
     });
 }
 
-VarSet& Liveness::head(const Stmt& s) { return heads_.try_emplace(&s, program_).first->second; }
+VarSet& Liveness::head(const Stmt& s) {
+    return heads_.try_emplace(&s, program_).first->second;
+}
 
 void Liveness::read(VarId id, VarSet& live) const {
     if (program_.vars[static_cast<std::size_t>(id)].kind != VarKind::Const) {
@@ -90,7 +135,8 @@ void Liveness::add_reads(const Stmt& s, VarSet& live) const {
     }
     const std::uint64_t reads = builtin_of(s).reads;
     for (int i = 0; i < SL_VAR_COUNT; ++i) {
-        const bool exists = (variable_rows()[static_cast<std::size_t>(i)].readable & shader_type_bit(program_.shader_type)) != 0;
+        const bool exists = (variable_rows()[static_cast<std::size_t>(i)].readable &
+                             shader_type_bit(program_.shader_type)) != 0;
         if ((reads >> i & 1) != 0 && exists) {
             live.insert(live.global_slot(i));
         }
@@ -118,7 +164,8 @@ bool Liveness::has_effect(const Stmt& s) const {
     }
     const BuiltinRow& row = builtin_of(s);
     return row.has(PropEffect) && !row.has(PropRandom) &&
-           std::none_of(row.args.begin(), row.args.end(), [](const ArgSpec& a) { return a.is_output; });
+           std::none_of(row.args.begin(), row.args.end(),
+                        [](const ArgSpec& a) { return a.is_output; });
 }
 
 void Liveness::block(const Block& b, VarSet& live) {
@@ -129,24 +176,39 @@ void Liveness::block(const Block& b, VarSet& live) {
 
 void Liveness::statement(const Stmt& s, VarSet& live) {
     switch (s.op) {
-    case Op::If: branch(s, live); break;
-    case Op::Loop: loop(s, live); break;
-    case Op::Scope: scope(s, live); break;
+    case Op::If:
+        branch(s, live);
+        break;
+    case Op::Loop:
+        loop(s, live);
+        break;
+    case Op::Scope:
+        scope(s, live);
+        break;
     case Op::Illuminance:
-    case Op::Gather: light_loop(s, live); break;
+    case Op::Gather:
+        light_loop(s, live);
+        break;
     case Op::Illuminate:
-    case Op::Solar: illuminate(s, live); break;
+    case Op::Solar:
+        illuminate(s, live);
+        break;
     case Op::Break:
     case Op::Continue:
-    case Op::Leave: jump(s, live); break;
-    default: simple(s, live); break;
+    case Op::Leave:
+        jump(s, live);
+        break;
+    default:
+        simple(s, live);
+        break;
     }
 }
 
 void Liveness::simple(const Stmt& s, VarSet& live) {
     const bool is_area = mode_ == LiveMode::Aux && s.op == Op::Call && builtin_of(s).has(PropArea);
     bool wanted = has_effect(s) || is_area;
-    for_each_write(s, [&](VarId id, bool) { wanted = wanted || live.contains(live.slot(program_, id)); });
+    for_each_write(
+        s, [&](VarId id, bool) { wanted = wanted || live.contains(live.slot(program_, id)); });
     if (!wanted) {
         return;
     }
@@ -245,7 +307,8 @@ void Liveness::light_loop(const Stmt& s, VarSet& live) {
     }
     changed_ = head(s).merge(live) || changed_;
     bool wanted = any_kept(s);
-    for_each_write(s, [&](VarId id, bool) { wanted = wanted || live.contains(live.slot(program_, id)); });
+    for_each_write(
+        s, [&](VarId id, bool) { wanted = wanted || live.contains(live.slot(program_, id)); });
     if (wanted) {
         keep(s);
         add_reads(s, live);
@@ -265,6 +328,11 @@ void Liveness::illuminate(const Stmt& s, VarSet& live) {
     if (mode_ == LiveMode::Results || any_kept(s)) {
         keep(s);
         add_reads(s, live);
+        if (s.op == Op::Illuminate) { // L = Ps - from
+            live.insert(live.global_slot(SL_VAR_Ps));
+        } else if (s.args.empty()) { // L = -normalize(Ns)
+            live.insert(live.global_slot(SL_VAR_Ns));
+        }
     }
 }
 

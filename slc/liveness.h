@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Backward liveness over structured IR, per shading point: which variables are read later, and hence which
-// statements matter. Strong form: operands of a statement that does not matter are not read.
-// Loops are solved by repeating the whole walk until no set grows, so the cost is (nesting of loops + 2) walks.
+// Backward liveness over structured IR, per shading point: which variables are read later, and
+// hence which statements matter. Strong form: operands of a statement that does not matter are not
+// read. Loops are solved by repeating the whole walk until no set grows, so the cost is (nesting of
+// loops + 2) walks.
 #pragma once
 
 #include "slc/ir.h"
@@ -13,7 +14,8 @@
 
 namespace slc {
 
-// Variables by VarId; predefined variables by their id, so that those only built-ins read have a place too.
+// Variables by VarId; predefined variables by their id, so that those only built-ins read have a
+// place too.
 class VarSet {
 public:
     VarSet() = default;
@@ -23,10 +25,14 @@ public:
         const Var& v = program.vars[static_cast<std::size_t>(id)];
         return v.kind == VarKind::Global ? global_slot(v.index) : static_cast<std::size_t>(id);
     }
-    [[nodiscard]] std::size_t global_slot(int variable) const { return num_vars_ + static_cast<std::size_t>(variable); }
+    [[nodiscard]] std::size_t global_slot(int variable) const {
+        return num_vars_ + static_cast<std::size_t>(variable);
+    }
     void insert(std::size_t slot) { words_[slot / 64] |= 1ull << (slot % 64); }
     void erase(std::size_t slot) { words_[slot / 64] &= ~(1ull << (slot % 64)); }
-    [[nodiscard]] bool contains(std::size_t slot) const { return (words_[slot / 64] >> (slot % 64) & 1) != 0; }
+    [[nodiscard]] bool contains(std::size_t slot) const {
+        return (words_[slot / 64] >> (slot % 64) & 1) != 0;
+    }
     // True if something was added.
     bool merge(const VarSet& other);
     // Predefined variables as a needed mask.
@@ -39,8 +45,12 @@ private:
 
 enum class LiveMode {
     Results, // what reaches the outputs of the shader, or is printed
-    Aux      // what reaches the arguments of area operators: the slice evaluated at the auxiliary points
+    Aux // what reaches the arguments of area operators: the slice evaluated at the auxiliary points
 };
+
+// Predefined variables that statements of the block assign; in lights also what illuminate and
+// solar set.
+[[nodiscard]] std::uint64_t written_globals(const Program& program, const Block& b);
 
 class Liveness {
 public:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frame of lowering: parameters with their defaults, variables, constants, and what a shader type allows.
+// Frame of lowering: parameters with their defaults, variables, constants, and what a shader type
+// allows.
 #include "slc/lower.h"
 
 #include "slc/builtins.h"
@@ -19,8 +20,9 @@ std::optional<Program> lower(const ast::Shader& shader, Messages& messages) {
 
 Lowering::Deeper::Deeper(Lowering& lowering, Loc loc) : lowering_(lowering) {
     if (++lowering_.depth_ > max_depth) {
-        lowering_.messages_.error(loc, "expressions, blocks and function calls are nested too deeply here",
-                                  base::Code::Limit);
+        lowering_.messages_.error(
+            loc, "expressions, blocks and function calls are nested too deeply here",
+            base::Code::Limit);
         throw Overflow{};
     }
 }
@@ -103,9 +105,11 @@ std::string Lowering::unique_name(const std::string& wanted) {
 }
 
 VarId Lowering::new_var(Var v) {
-    num_values_ += static_cast<std::size_t>(std::max(v.array_length, 1)) * static_cast<std::size_t>(num_components(v.type));
+    num_values_ += static_cast<std::size_t>(std::max(v.array_length, 1)) *
+                   static_cast<std::size_t>(num_components(v.type));
     if (num_values_ > max_values) {
-        messages_.error(v.loc, "the shader has too many variables and array elements", base::Code::Limit);
+        messages_.error(v.loc, "the shader has too many variables and array elements",
+                        base::Code::Limit);
         throw Overflow{};
     }
     program_.vars.push_back(std::move(v));
@@ -173,14 +177,18 @@ VarId Lowering::text(const std::string& value) {
 }
 
 VarId Lowering::zero(Type type) {
-    return type == Type::String ? text("")
-                                : constant(type, std::vector<float>(static_cast<std::size_t>(num_components(type)), 0.0F));
+    return type == Type::String
+               ? text("")
+               : constant(type,
+                          std::vector<float>(static_cast<std::size_t>(num_components(type)), 0.0F));
 }
 
 Stmt& Lowering::emit(Op op, VarId dst, std::vector<VarId> args, Loc loc) {
     if (++num_statements_ > max_statements) {
-        messages_.error(loc, "with all functions inlined the shader has more than " + std::to_string(max_statements) +
-                                 " statements", base::Code::Limit);
+        messages_.error(loc,
+                        "with all functions inlined the shader has more than " +
+                            std::to_string(max_statements) + " statements",
+                        base::Code::Limit);
         throw Overflow{};
     }
     Stmt& s = block_->emplace_back();
@@ -219,7 +227,8 @@ void Lowering::check_light_variable(int id, Loc loc) {
     const bool is_light = shader_.type == SL_SHADER_light;
     if (is_light ? id == SL_VAR_L && illuminate_depth_ == 0 : illuminance_depth_ == 0) {
         messages_.warning_once(loc, quoted(variable_rows()[static_cast<std::size_t>(id)].name) +
-                                        " has a value only inside " + (is_light ? "illuminate or solar" : "illuminance"));
+                                        " has a value only inside " +
+                                        (is_light ? "illuminate or solar" : "illuminance"));
     }
 }
 
@@ -229,16 +238,20 @@ VarId Lowering::variable(const Symbol& symbol, Loc loc) {
     }
     if (symbol.kind != SymbolKind::Global) {
         const auto it = variables_.find(&symbol);
-        return it != variables_.end() ? it->second : zero(symbol.type); // an error has been reported
+        return it != variables_.end() ? it->second
+                                      : zero(symbol.type); // an error has been reported
     }
     const VariableRow& row = variable_rows()[static_cast<std::size_t>(symbol.global)];
     if (in_init_) {
-        messages_.error_once(loc, "the default of a parameter is evaluated once per instance and cannot use " + quoted(row.name));
+        messages_.error_once(
+            loc, "the default of a parameter is evaluated once per instance and cannot use " +
+                     quoted(row.name));
         return global(symbol.global, loc);
     }
     const std::uint32_t bit = shader_type_bit(shader_.type);
     if (((row.readable | row.writable) & bit) == 0) {
-        messages_.error_once(loc, quoted(row.name) + " does not exist in " + std::string(shader_type_name(shader_.type)) + " shaders");
+        messages_.error_once(loc, quoted(row.name) + " does not exist in " +
+                                      std::string(shader_type_name(shader_.type)) + " shaders");
         return global(symbol.global, loc);
     }
     check_light_variable(symbol.global, loc);
@@ -265,8 +278,10 @@ VarId Lowering::assignable(const Symbol& symbol, Loc loc) {
         return id;
     }
     const VariableRow& row = variable_rows()[static_cast<std::size_t>(symbol.global)];
-    if ((row.writable & shader_type_bit(shader_.type)) == 0 && (row.readable & shader_type_bit(shader_.type)) != 0) {
-        messages_.warning_once(loc, quoted(row.name) + " is read-only in " + std::string(shader_type_name(shader_.type)) +
+    if ((row.writable & shader_type_bit(shader_.type)) == 0 &&
+        (row.readable & shader_type_bit(shader_.type)) != 0) {
+        messages_.warning_once(loc, quoted(row.name) + " is read-only in " +
+                                        std::string(shader_type_name(shader_.type)) +
                                         " shaders; a local copy is assigned");
     }
     return id;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Typed syntax tree to IR: one Program per shader, user functions inlined, control flow structured, conversions
-// explicit. Also decides what depends on the shader type: which predefined variables and light statements are legal.
-// Invariant: without recursion a symbol has at most one live activation, so one map from symbols to variables serves
-// all inlined bodies.
+// Typed syntax tree to IR: one Program per shader, user functions inlined, control flow structured,
+// conversions explicit. Also decides what depends on the shader type: which predefined variables
+// and light statements are legal. Invariant: without recursion a symbol has at most one live
+// activation, so one map from symbols to variables serves all inlined bodies.
 #pragma once
 
 #include "slc/ast.h"
@@ -20,7 +20,8 @@ namespace slc {
 
 class Lowering {
 public:
-    Lowering(const ast::Shader& shader, Messages& messages) : shader_(shader), messages_(messages) {}
+    Lowering(const ast::Shader& shader, Messages& messages)
+        : shader_(shader), messages_(messages) {}
     std::optional<Program> run();
 
 private:
@@ -49,7 +50,9 @@ private:
     VarId constant(float value) { return constant(Type::Float, {value}); }
     VarId text(const std::string& value);
     VarId zero(Type type);
-    [[nodiscard]] const Var& var(VarId id) const { return program_.vars[static_cast<std::size_t>(id)]; }
+    [[nodiscard]] const Var& var(VarId id) const {
+        return program_.vars[static_cast<std::size_t>(id)];
+    }
     Stmt& emit(Op op, VarId dst, std::vector<VarId> args, Loc loc);
     // Fills a body of the statement last emitted.
     template <class Fill> Block block(Fill fill);
@@ -71,15 +74,18 @@ private:
     void illuminance(const ast::Stmt& s);
     void gather(const ast::Stmt& s);
     std::vector<std::pair<std::string, VarId>> option_values(const ast::Stmt& s, std::size_t first);
-    void body(const std::vector<ast::Stmt*>& list); // a function's or the shader's, in a Scope if it returns early
+    void body(const std::vector<ast::Stmt*>&
+                  list); // a function's or the shader's, in a Scope if it returns early
 
-    // lower_expr.cpp: the value of an expression, in a variable. `into`: where the caller wants it, a hint.
+    // lower_expr.cpp: the value of an expression, in a variable. `into`: where the caller wants it,
+    // a hint.
     VarId value(const ast::Expr& e, VarId into = no_var);
     VarId value_as(const ast::Expr& e, Type wanted);
     void store_into(const ast::Expr& e, VarId target);
     VarId convert(VarId id, Type wanted, Loc loc);
     VarId target(Type type, VarId into, Loc loc);
-    std::vector<VarId> operands(const std::vector<ast::Expr*>& list, const std::vector<Type>& types);
+    std::vector<VarId> operands(const std::vector<ast::Expr*>& list,
+                                const std::vector<Type>& types);
     VarId protect(VarId id, Loc loc);
     VarId unary(const ast::Expr& e, VarId into);
     VarId binary(const ast::Expr& e, VarId into);
@@ -103,7 +109,8 @@ private:
     VarId output_argument(const ast::Expr& e, std::vector<WriteBack>& back);
     void write_back(const std::vector<WriteBack>& back, Loc loc);
     VarId inline_call(const ast::Expr& e);
-    void bind_reference(const ast::Symbol& formal, const ast::Expr& arg, std::vector<WriteBack>& back);
+    void bind_reference(const ast::Symbol& formal, const ast::Expr& arg,
+                        std::vector<WriteBack>& back);
 
     static constexpr std::size_t max_statements = 200'000;
     static constexpr std::size_t max_values = 4'000'000; // floats in all arrays
@@ -119,7 +126,8 @@ private:
     std::unordered_set<std::string> names_;
     std::unordered_map<std::string, int> name_counts_;
     VarId globals_[SL_VAR_COUNT];
-    VarId global_copies_[SL_VAR_COUNT]; // local copies of predefined variables that may not be assigned
+    VarId global_copies_[SL_VAR_COUNT]; // local copies of predefined variables that may not be
+                                        // assigned
     VarId result_ = no_var;             // of the function being inlined
     bool in_init_ = false;              // in a parameter's default
     int illuminance_depth_ = 0;

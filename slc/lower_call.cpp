@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Calls to IR: rows of the built-in table become Call statements, user functions are inlined.
-// Arguments go by value; output arguments and whole arrays by reference; elements of arrays are copied in and back.
-#include "slc/lower.h"
-
+// Arguments go by value; output arguments and whole arrays by reference; elements of arrays are
+// copied in and back.
 #include "slc/ir_util.h"
+#include "slc/lower.h"
 
 #include <algorithm>
 
@@ -29,9 +29,11 @@ VarId Lowering::call(const Expr& e, VarId into) {
 }
 
 // A built-in found by the name of its body, for calls the language makes itself (space casts).
-VarId Lowering::builtin_by_body(std::string_view body, std::vector<VarId> args, Type result, Loc loc) {
+VarId Lowering::builtin_by_body(std::string_view body, std::vector<VarId> args, Type result,
+                                Loc loc) {
     const auto rows = builtin_rows();
-    const auto it = std::find_if(rows.begin(), rows.end(), [&](const BuiltinRow& r) { return r.body == body; });
+    const auto it =
+        std::find_if(rows.begin(), rows.end(), [&](const BuiltinRow& r) { return r.body == body; });
     const VarId dst = temp(result, loc);
     emit(Op::Call, dst, std::move(args), loc).builtin = static_cast<int>(it - rows.begin());
     return dst;
@@ -75,13 +77,16 @@ VarId Lowering::builtin_call(const Expr& e, VarId into) {
         } else if (is_whole_array(arg)) {
             args.push_back(variable(*arg.symbol, arg.loc));
         } else {
-            const VarId id = e.arg_types[i] == Type::Void ? value(arg) : value_as(arg, e.arg_types[i]);
-            const bool changes_later = std::any_of(e.args.begin() + static_cast<std::ptrdiff_t>(i) + 1, e.args.end(),
-                                                   [](const Expr* x) { return has_effects(*x); });
+            const VarId id =
+                e.arg_types[i] == Type::Void ? value(arg) : value_as(arg, e.arg_types[i]);
+            const bool changes_later =
+                std::any_of(e.args.begin() + static_cast<std::ptrdiff_t>(i) + 1, e.args.end(),
+                            [](const Expr* x) { return has_effects(*x); });
             args.push_back(changes_later ? protect(id, arg.loc) : id);
         }
         if (i == 0 && row.has(PropChannel)) {
-            args.push_back(arg.channel != nullptr ? value_as(*arg.channel, Type::Float) : constant(0));
+            args.push_back(arg.channel != nullptr ? value_as(*arg.channel, Type::Float)
+                                                  : constant(0));
         }
     }
     VarId dst = no_var;
@@ -93,14 +98,15 @@ VarId Lowering::builtin_call(const Expr& e, VarId into) {
     return dst;
 }
 
-// Output formals and arrays are names of the actual variable. An array formal that is assigned without being
-// output gets a copy.
+// Output formals and arrays are names of the actual variable. An array formal that is assigned
+// without being output gets a copy.
 void Lowering::bind_reference(const Symbol& formal, const Expr& arg, std::vector<WriteBack>& back) {
     if (formal.array_length == 0) {
         variables_[&formal] = output_argument(arg, back);
         return;
     }
-    const VarId actual = formal.is_output ? assignable(*arg.symbol, arg.loc) : variable(*arg.symbol, arg.loc);
+    const VarId actual =
+        formal.is_output ? assignable(*arg.symbol, arg.loc) : variable(*arg.symbol, arg.loc);
     variables_[&formal] = actual;
     if (formal.assigned && !formal.is_output) {
         const VarId copy = local(formal.name, formal.type, var(actual).array_length, formal.loc);
@@ -113,7 +119,8 @@ VarId Lowering::inline_call(const Expr& e) {
     const Deeper deeper(*this, e.loc);
     const ast::Function& f = *e.function;
     std::vector<WriteBack> back;
-    // All arguments are evaluated before any formal is bound, since they may call the same function.
+    // All arguments are evaluated before any formal is bound, since they may call the same
+    // function.
     std::vector<VarId> given(e.args.size(), no_var);
     for (std::size_t i = 0; i < e.args.size(); ++i) {
         if (!f.formals[i]->is_output && f.formals[i]->array_length == 0) {

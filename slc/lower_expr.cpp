@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Expressions to IR. Every value is a variable: names deliver their own variable, operations a new temporary, or the
-// variable the caller wants the result in.
-#include "slc/lower.h"
-
+// Expressions to IR. Every value is a variable: names deliver their own variable, operations a new
+// temporary, or the variable the caller wants the result in.
 #include "slc/ir_util.h"
+#include "slc/lower.h"
 
 #include <algorithm>
 
@@ -23,17 +22,20 @@ bool has_effects(const Expr& e) {
             }
         }
     }
-    return std::any_of(e.args.begin(), e.args.end(), [](const Expr* arg) { return has_effects(*arg); });
+    return std::any_of(e.args.begin(), e.args.end(),
+                       [](const Expr* arg) { return has_effects(*arg); });
 }
 
 namespace {
 
 // Worth evaluating whether needed or not: a few operations without calls and assignments.
 bool is_cheap(const Expr& e, int& budget) {
-    if (--budget < 0 || e.kind == ExprKind::Call || e.kind == ExprKind::Assign || (e.kind == ExprKind::Cast && !e.text.empty())) {
+    if (--budget < 0 || e.kind == ExprKind::Call || e.kind == ExprKind::Assign ||
+        (e.kind == ExprKind::Cast && !e.text.empty())) {
         return false;
     }
-    return std::all_of(e.args.begin(), e.args.end(), [&](const Expr* arg) { return is_cheap(*arg, budget); });
+    return std::all_of(e.args.begin(), e.args.end(),
+                       [&](const Expr* arg) { return is_cheap(*arg, budget); });
 }
 
 bool is_cheap(const Expr& e) {
@@ -41,32 +43,41 @@ bool is_cheap(const Expr& e) {
     return is_cheap(e, budget);
 }
 
-
-
-
 } // namespace
 
 VarId Lowering::value(const Expr& e, VarId into) {
     const Deeper deeper(*this, e.loc);
     switch (e.kind) {
-    case ExprKind::Number: return constant(static_cast<float>(e.number));
-    case ExprKind::Text: return text(e.text);
-    case ExprKind::Name: return e.symbol != nullptr ? variable(*e.symbol, e.loc) : constant(0);
-    case ExprKind::Index: return index(e, into);
-    case ExprKind::Call: return call(e, into);
-    case ExprKind::Cast: return cast(e, into);
-    case ExprKind::Unary: return unary(e, into);
-    case ExprKind::Binary: return e.op == Op::And || e.op == Op::Or ? logical(e, into) : binary(e, into);
-    case ExprKind::Ternary: return ternary(e, into);
-    case ExprKind::Assign: return assign(e);
-    case ExprKind::Tuple: return tuple(e, into);
+    case ExprKind::Number:
+        return constant(static_cast<float>(e.number));
+    case ExprKind::Text:
+        return text(e.text);
+    case ExprKind::Name:
+        return e.symbol != nullptr ? variable(*e.symbol, e.loc) : constant(0);
+    case ExprKind::Index:
+        return index(e, into);
+    case ExprKind::Call:
+        return call(e, into);
+    case ExprKind::Cast:
+        return cast(e, into);
+    case ExprKind::Unary:
+        return unary(e, into);
+    case ExprKind::Binary:
+        return e.op == Op::And || e.op == Op::Or ? logical(e, into) : binary(e, into);
+    case ExprKind::Ternary:
+        return ternary(e, into);
+    case ExprKind::Assign:
+        return assign(e);
+    case ExprKind::Tuple:
+        return tuple(e, into);
     }
     return no_var;
 }
 
 // `into` if it can hold the type as it is, else a new temporary.
 VarId Lowering::target(Type type, VarId into, Loc loc) {
-    const bool fits = into != no_var && same_class(var(into).type, type) && var(into).array_length == 0;
+    const bool fits =
+        into != no_var && same_class(var(into).type, type) && var(into).array_length == 0;
     return fits ? into : temp(type, loc);
 }
 
@@ -83,7 +94,9 @@ VarId Lowering::convert(VarId id, Type wanted, Loc loc) {
     return result;
 }
 
-VarId Lowering::value_as(const Expr& e, Type wanted) { return convert(value(e), wanted, e.loc); }
+VarId Lowering::value_as(const Expr& e, Type wanted) {
+    return convert(value(e), wanted, e.loc);
+}
 
 void Lowering::store_into(const Expr& e, VarId dst) {
     const VarId result = value(e, dst);
@@ -104,12 +117,14 @@ VarId Lowering::protect(VarId id, Loc loc) {
 }
 
 // Left to right; a value is protected if an operand after it may change variables.
-std::vector<VarId> Lowering::operands(const std::vector<Expr*>& list, const std::vector<Type>& types) {
+std::vector<VarId> Lowering::operands(const std::vector<Expr*>& list,
+                                      const std::vector<Type>& types) {
     std::vector<VarId> ids;
     for (std::size_t i = 0; i < list.size(); ++i) {
         VarId id = value_as(*list[i], types[i]);
-        const bool changes_later = std::any_of(list.begin() + static_cast<std::ptrdiff_t>(i) + 1, list.end(),
-                                               [](const Expr* e) { return has_effects(*e); });
+        const bool changes_later =
+            std::any_of(list.begin() + static_cast<std::ptrdiff_t>(i) + 1, list.end(),
+                        [](const Expr* e) { return has_effects(*e); });
         ids.push_back(changes_later ? protect(id, list[i]->loc) : id);
     }
     return ids;
@@ -142,7 +157,8 @@ VarId Lowering::binary(const Expr& e, VarId into) {
     return arithmetic(e.op, left, right, e.type, into, e.loc);
 }
 
-// && and ||: the right operand is evaluated only where it decides, unless it is as cheap as the branch.
+// && and ||: the right operand is evaluated only where it decides, unless it is as cheap as the
+// branch.
 VarId Lowering::logical(const Expr& e, VarId into) {
     VarId left = value_as(*e.args[0], Type::Float);
     if (is_cheap(*e.args[1])) {
@@ -183,9 +199,11 @@ VarId Lowering::ternary(const Expr& e, VarId into) {
 
 VarId Lowering::tuple(const Expr& e, VarId into) {
     const bool is_matrix = e.args.size() == 16;
-    const std::vector<VarId> parts = operands(e.args, std::vector<Type>(e.args.size(), Type::Float));
+    const std::vector<VarId> parts =
+        operands(e.args, std::vector<Type>(e.args.size(), Type::Float));
     const Type type = is_matrix ? Type::Matrix : e.type;
-    if (std::all_of(parts.begin(), parts.end(), [&](VarId p) { return var(p).kind == VarKind::Const; })) {
+    if (std::all_of(parts.begin(), parts.end(),
+                    [&](VarId p) { return var(p).kind == VarKind::Const; })) {
         std::vector<float> values;
         for (const VarId p : parts) {
             values.push_back(var(p).values[0]);
@@ -197,22 +215,34 @@ VarId Lowering::tuple(const Expr& e, VarId into) {
     return result;
 }
 
-// The value in the cast's type; a space converts from that space to current (colors: to rgb), sl.md 1.4.
+// The value in the cast's type; a space converts from that space to current (colors: to rgb),
+// sl.md 1.4.
 VarId Lowering::cast(const Expr& e, VarId into) {
     const Expr& operand = *e.args[0];
-    const bool keeps_space = e.text.empty() || e.text == (e.type == Type::Color ? "rgb" : "current");
+    const bool keeps_space =
+        e.text.empty() || e.text == (e.type == Type::Color ? "rgb" : "current");
     if (keeps_space) {
-        return convert(value(operand, same_class(operand.type, e.type) ? into : no_var), e.type, e.loc);
+        return convert(value(operand, same_class(operand.type, e.type) ? into : no_var), e.type,
+                       e.loc);
     }
     const VarId plain = value_as(operand, e.type);
     const VarId space = text(e.text);
     switch (e.type) {
-    case Type::Color: return builtin_by_body("ctransform_from_to", {space, text("rgb"), plain}, e.type, e.loc);
-    case Type::Point: return builtin_by_body("transform_from_to", {space, text("current"), plain}, e.type, e.loc);
-    case Type::Vector: return builtin_by_body("vtransform_from_to", {space, text("current"), plain}, e.type, e.loc);
-    case Type::Normal: return builtin_by_body("ntransform_from_to", {space, text("current"), plain}, e.type, e.loc);
-    case Type::Matrix: return builtin_by_body("mtransform_from_to", {space, text("current"), plain}, e.type, e.loc);
-    default: return plain;
+    case Type::Color:
+        return builtin_by_body("ctransform_from_to", {space, text("rgb"), plain}, e.type, e.loc);
+    case Type::Point:
+        return builtin_by_body("transform_from_to", {space, text("current"), plain}, e.type, e.loc);
+    case Type::Vector:
+        return builtin_by_body("vtransform_from_to", {space, text("current"), plain}, e.type,
+                               e.loc);
+    case Type::Normal:
+        return builtin_by_body("ntransform_from_to", {space, text("current"), plain}, e.type,
+                               e.loc);
+    case Type::Matrix:
+        return builtin_by_body("mtransform_from_to", {space, text("current"), plain}, e.type,
+                               e.loc);
+    default:
+        return plain;
     }
 }
 
@@ -236,7 +266,8 @@ VarId Lowering::assign(const Expr& e) {
         return assign_element(e);
     }
     if (left.symbol->array_length != 0) {
-        emit(Op::Copy, assignable(*left.symbol, left.loc), {variable(*e.args[1]->symbol, e.loc)}, e.loc);
+        emit(Op::Copy, assignable(*left.symbol, left.loc), {variable(*e.args[1]->symbol, e.loc)},
+             e.loc);
         return no_var;
     }
     const VarId dst = assignable(*left.symbol, left.loc);
@@ -275,7 +306,8 @@ VarId Lowering::assign_element(const Expr& e) {
         const VarId right = value(*e.args[1]);
         const VarId old = temp(type, e.loc);
         emit(Op::Load, old, {array, at}, e.loc);
-        result = convert(arithmetic(e.op, old, right, compound_type(e), no_var, e.loc), type, e.loc);
+        result =
+            convert(arithmetic(e.op, old, right, compound_type(e), no_var, e.loc), type, e.loc);
     }
     emit(Op::Store, array, {at, result}, e.loc);
     return result;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Statements to IR. `is_tail` says that nothing of the function follows the statement: a return there needs no jump.
-#include "slc/lower.h"
-
+// Statements to IR. `is_tail` says that nothing of the function follows the statement: a return
+// there needs no jump.
 #include "slc/builtins.h"
+#include "slc/lower.h"
 
 namespace slc {
 
@@ -17,8 +17,10 @@ bool returns_early(const std::vector<ast::Stmt*>& list, bool is_tail);
 
 bool returns_early(const ast::Stmt& s, bool is_tail) {
     switch (s.kind) {
-    case StmtKind::Return: return !is_tail;
-    case StmtKind::Block: return returns_early(s.body, is_tail);
+    case StmtKind::Return:
+        return !is_tail;
+    case StmtKind::Block:
+        return returns_early(s.body, is_tail);
     case StmtKind::If:
         for (const ast::Stmt* part : s.body) {
             if (returns_early(*part, is_tail)) {
@@ -31,8 +33,10 @@ bool returns_early(const ast::Stmt& s, bool is_tail) {
     case StmtKind::Solar:
     case StmtKind::Illuminate:
     case StmtKind::Illuminance:
-    case StmtKind::Gather: return returns_early(s.body, false);
-    default: return false;
+    case StmtKind::Gather:
+        return returns_early(s.body, false);
+    default:
+        return false;
     }
 }
 
@@ -67,27 +71,47 @@ void Lowering::statement(const ast::Stmt& s, bool is_tail) {
     switch (s.kind) {
     case StmtKind::Empty:
     case StmtKind::Extern:
-    case StmtKind::Function: break;
-    case StmtKind::Block: statements(s.body, is_tail); break;
-    case StmtKind::Declare: declaration(s); break;
-    case StmtKind::Expression: value(*s.exprs[0]); break;
-    case StmtKind::If: if_statement(s, is_tail); break;
+    case StmtKind::Function:
+        break;
+    case StmtKind::Block:
+        statements(s.body, is_tail);
+        break;
+    case StmtKind::Declare:
+        declaration(s);
+        break;
+    case StmtKind::Expression:
+        value(*s.exprs[0]);
+        break;
+    case StmtKind::If:
+        if_statement(s, is_tail);
+        break;
     case StmtKind::While:
-    case StmtKind::For: loop(s); break;
+    case StmtKind::For:
+        loop(s);
+        break;
     case StmtKind::Break:
     case StmtKind::Continue:
-        emit(s.kind == StmtKind::Break ? Op::Break : Op::Continue, no_var, {}, s.loc).levels = s.levels;
+        emit(s.kind == StmtKind::Break ? Op::Break : Op::Continue, no_var, {}, s.loc).levels =
+            s.levels;
         break;
-    case StmtKind::Return: return_statement(s, is_tail); break;
+    case StmtKind::Return:
+        return_statement(s, is_tail);
+        break;
     case StmtKind::Solar:
-    case StmtKind::Illuminate: illuminate(s); break;
-    case StmtKind::Illuminance: illuminance(s); break;
-    case StmtKind::Gather: gather(s); break;
+    case StmtKind::Illuminate:
+        illuminate(s);
+        break;
+    case StmtKind::Illuminance:
+        illuminance(s);
+        break;
+    case StmtKind::Gather:
+        gather(s);
+        break;
     }
 }
 
-// Locals without a value start at zero each time control reaches them (sl.md 1.5). In `float x = x` the right x
-// is an outer one: it has its own symbol.
+// Locals without a value start at zero each time control reaches them (sl.md 1.5). In `float x = x`
+// the right x is an outer one: it has its own symbol.
 void Lowering::declaration(const ast::Stmt& s) {
     for (const ast::Variable& v : s.variables) {
         const VarId id = local_for(*v.symbol);
@@ -101,12 +125,15 @@ void Lowering::declaration(const ast::Stmt& s) {
 
 void Lowering::initialise(const ast::Variable& variable, VarId target) {
     if (variable.init != nullptr) {
-        const bool whole_array = variable.init->kind == ExprKind::Name && variable.init->symbol != nullptr &&
+        const bool whole_array = variable.init->kind == ExprKind::Name &&
+                                 variable.init->symbol != nullptr &&
                                  variable.init->symbol->array_length != 0;
         if (whole_array) {
-            emit(Op::Copy, target, {this->variable(*variable.init->symbol, variable.init->loc)}, variable.init->loc);
+            emit(Op::Copy, target, {this->variable(*variable.init->symbol, variable.init->loc)},
+                 variable.init->loc);
         } else if (variable.symbol->array_length != 0) {
-            emit(Op::Copy, target, {value_as(*variable.init, variable.symbol->type)}, variable.init->loc);
+            emit(Op::Copy, target, {value_as(*variable.init, variable.symbol->type)},
+                 variable.init->loc);
         } else {
             store_into(*variable.init, target);
         }
@@ -115,9 +142,13 @@ void Lowering::initialise(const ast::Variable& variable, VarId target) {
     if (constant_elements(variable, target)) {
         return;
     }
+    if (static_cast<int>(variable.elements.size()) < variable.symbol->array_length) {
+        emit(Op::Copy, target, {zero(variable.symbol->type)}, variable.symbol->loc);
+    }
     for (std::size_t i = 0; i < variable.elements.size(); ++i) {
         const VarId element = value_as(*variable.elements[i], variable.symbol->type);
-        emit(Op::Store, target, {constant(static_cast<float>(i)), element}, variable.elements[i]->loc);
+        emit(Op::Store, target, {constant(static_cast<float>(i)), element},
+             variable.elements[i]->loc);
     }
 }
 
@@ -165,8 +196,11 @@ bool Lowering::constant_elements(const ast::Variable& variable, VarId target) {
             return false;
         }
     }
-    const int length = static_cast<int>(variable.elements.size());
-    emit(Op::Copy, target, {constant(variable.symbol->type, std::move(values), length)}, variable.symbol->loc);
+    const int length = variable.symbol->array_length;
+    values.resize(static_cast<std::size_t>(length) *
+                  static_cast<std::size_t>(num_components(variable.symbol->type)));
+    emit(Op::Copy, target, {constant(variable.symbol->type, std::move(values), length)},
+         variable.symbol->loc);
     return true;
 }
 
@@ -187,7 +221,8 @@ void Lowering::loop(const ast::Stmt& s) {
         statement(*s.body[0], false);
     }
     VarId condition = no_var;
-    Block test = block([&] { condition = s.exprs.empty() ? constant(1) : value_as(*s.exprs[0], Type::Float); });
+    Block test = block(
+        [&] { condition = s.exprs.empty() ? constant(1) : value_as(*s.exprs[0], Type::Float); });
     Block repeated = block([&] { statement(*s.body.back(), false); });
     Block step = block([&] {
         for (const Expr* e : s.steps) {
@@ -227,7 +262,8 @@ void Lowering::illuminate(const ast::Stmt& s) {
     ++illuminate_depth_;
     Block inner = block([&] { statement(*s.body[0], false); });
     --illuminate_depth_;
-    Stmt& out = emit(s.kind == StmtKind::Solar ? Op::Solar : Op::Illuminate, no_var, std::move(args), s.loc);
+    Stmt& out = emit(s.kind == StmtKind::Solar ? Op::Solar : Op::Illuminate, no_var,
+                     std::move(args), s.loc);
     out.bodies.push_back(std::move(inner));
 }
 
@@ -273,7 +309,8 @@ void Lowering::gather(const ast::Stmt& s) {
 }
 
 // Name/value pairs from expression `first` on; values to be set are the variables themselves.
-std::vector<std::pair<std::string, VarId>> Lowering::option_values(const ast::Stmt& s, std::size_t first) {
+std::vector<std::pair<std::string, VarId>> Lowering::option_values(const ast::Stmt& s,
+                                                                   std::size_t first) {
     std::vector<std::pair<std::string, VarId>> pairs;
     for (std::size_t i = first; i + 1 < s.exprs.size(); i += 2) {
         const Expr& e = *s.exprs[i + 1];

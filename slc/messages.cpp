@@ -121,6 +121,8 @@ std::string spelling_hint(std::string_view wrong, std::span<const std::string_vi
     return found.empty() ? std::string() : ", did you mean " + quoted(found) + "?";
 }
 
-std::string quoted(std::string_view name) { return "'" + std::string(name.substr(0, 100)) + "'"; }
+std::string quoted(std::string_view name) {
+    return "'" + std::string(name.substr(0, 100)) + "'";
+}
 
 } // namespace slc

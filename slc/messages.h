@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Messages of one compilation: file:line:col: severity: text, then the source line with a caret.
-// Only this class writes to the Diag; the number of messages is bounded, so that garbage input ends soon.
+// Only this class writes to the Diag; the number of messages is bounded, so that garbage input ends
+// soon.
 #pragma once
 
 #include "runtime/base/diag.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which function a call means: user functions of the innermost scope first, then the rows of sl_builtins.def, by the
-// cost of converting arguments; ties go to the earlier one (sl.md 1.6, 2.4).
+// Which function a call means: user functions of the innermost scope first, then the rows of
+// sl_builtins.def, by the cost of converting arguments; ties go to the earlier one
+// (sl.md 1.6, 2.4).
 #include "slc/check.h"
 
 #include <algorithm>
@@ -15,7 +16,9 @@ using ast::Symbol;
 
 namespace {
 
-bool is_lvalue(const Expr& e) { return e.kind == ExprKind::Name || e.kind == ExprKind::Index; }
+bool is_lvalue(const Expr& e) {
+    return e.kind == ExprKind::Name || e.kind == ExprKind::Index;
+}
 
 } // namespace
 
@@ -34,7 +37,8 @@ bool Checker::match_function(Expr& e, Function& f, Candidate& c) {
         }
         if (array != nullptr) {
             const bool lengths = formal.array_length == ast::unsized_array ||
-                                 array->array_length == ast::unsized_array || array->array_length == formal.array_length;
+                                 array->array_length == ast::unsized_array ||
+                                 array->array_length == formal.array_length;
             if (array->type != formal.type || !lengths) {
                 return false;
             }
@@ -60,7 +64,8 @@ Type Checker::pvn_kind(Expr& e, const BuiltinRow& row) {
     for (std::size_t i = 0; i < e.args.size(); ++i) {
         const ArgSpec& spec = row.args[std::min(i, row.args.size() - 1)];
         if (spec.kind != ArgKind::Pvn || array_of(*e.args[i]) != nullptr) {
-            if (spec.is_array && array_of(*e.args[i]) != nullptr && is_pvn(array_of(*e.args[i])->type)) {
+            if (spec.is_array && array_of(*e.args[i]) != nullptr &&
+                is_pvn(array_of(*e.args[i])->type)) {
                 return array_of(*e.args[i])->type;
             }
             continue;
@@ -93,8 +98,9 @@ bool Checker::match_output(Expr& arg, const ArgSpec& spec, Candidate& c) {
         return true;
     }
     const Type type = arg.symbol->type;
-    const bool fits = spec.kind == ArgKind::Pvn ? is_pvn(type) : conversion_cost(spec.type, type) <= 1 &&
-                                                                     conversion_cost(type, spec.type) <= 1;
+    const bool fits = spec.kind == ArgKind::Pvn ? is_pvn(type)
+                                                : conversion_cost(spec.type, type) <= 1 &&
+                                                      conversion_cost(type, spec.type) <= 1;
     c.cost += fits && type != spec.type && spec.kind == ArgKind::Exact ? 1 : 0;
     c.arg_types.push_back(Type::Void);
     return fits;
@@ -110,7 +116,8 @@ bool Checker::match_arg(Expr& arg, const ArgSpec& spec, Type pvn, Candidate& c) 
             return false;
         }
         c.arg_types.push_back(Type::Void);
-        return spec.kind == ArgKind::Anything || (spec.kind == ArgKind::Pvn ? is_pvn(array->type) : array->type == spec.type);
+        return spec.kind == ArgKind::Anything ||
+               (spec.kind == ArgKind::Pvn ? is_pvn(array->type) : array->type == spec.type);
     }
     if (array_of(arg) != nullptr) {
         return false;
@@ -200,7 +207,8 @@ std::vector<Checker::Candidate> Checker::candidates(Expr& e) {
     return out;
 }
 
-// name[channel] of texture functions: the parser saw an index, but a plain string has none (note 7).
+// name[channel] of texture functions: the parser saw an index, but a plain string has none (note
+// 7).
 void Checker::split_channel(Expr& e) {
     if (e.args.empty() || e.args[0]->kind != ExprKind::Index) {
         return;
@@ -227,7 +235,8 @@ std::string Checker::describe_args(Expr& e) {
             continue;
         }
         std::string_view name = "void";
-        for (const Type t : {Type::String, Type::Matrix, Type::Color, Type::Normal, Type::Vector, Type::Point, Type::Float}) {
+        for (const Type t : {Type::String, Type::Matrix, Type::Color, Type::Normal, Type::Vector,
+                             Type::Point, Type::Float}) {
             name = costs(*arg)[t] != no_cost ? type_name(t) : name;
         }
         text += arg->kind == ExprKind::Tuple && arg->args.size() == 3 ? "triple" : name;
@@ -242,7 +251,8 @@ void Checker::no_candidate(Expr& e) {
         const bool is_open = std::any_of(open_functions_.begin(), open_functions_.end(),
                                          [&](const Function* f) { return f->name == e.text; });
         if (is_open) {
-            fail(e, "function " + quoted(e.text) + " calls itself; there is no recursion in the Shading Language");
+            fail(e, "function " + quoted(e.text) +
+                        " calls itself; there is no recursion in the Shading Language");
             return;
         }
         const auto names = scopes_.function_names();
@@ -293,7 +303,8 @@ void Checker::settle_call(Expr& e, std::optional<Type> natural) {
         if (natural && c.result != *natural) {
             continue;
         }
-        other_result = other_result || (best != nullptr && c.result != best->result && c.cost == best->cost);
+        other_result =
+            other_result || (best != nullptr && c.result != best->result && c.cost == best->cost);
         if (best == nullptr || c.cost < best->cost) {
             best = &c;
         }
@@ -307,13 +318,15 @@ void Checker::settle_call(Expr& e, std::optional<Type> natural) {
     e.arg_types = best->arg_types;
     if (!natural && other_result && e.builtin >= 0 &&
         builtin_rows()[static_cast<std::size_t>(e.builtin)].has(PropTextures)) {
-        messages_.warning(e.loc, quoted(e.text) + " can give several types here; " + std::string(type_name(e.type)) +
+        messages_.warning(e.loc, quoted(e.text) + " can give several types here; " +
+                                     std::string(type_name(e.type)) +
                                      " is taken, a cast would say which");
     }
     for (std::size_t i = 0; i < e.args.size(); ++i) {
         Expr& arg = *e.args[i];
         if (e.arg_types[i] != Type::Void) {
-            deliver(arg, e.arg_types[i], "argument " + std::to_string(i + 1) + " of " + quoted(e.text));
+            deliver(arg, e.arg_types[i],
+                    "argument " + std::to_string(i + 1) + " of " + quoted(e.text));
         } else if (array_of(arg) == nullptr) {
             deliver_any(arg, true);
         }

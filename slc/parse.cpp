@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Token handling, recovery and the productions for definitions. The grammar's notes in sl.md 1.3 are cited where they
-// decide something.
+// Token handling, recovery and the productions for definitions. The grammar's notes in sl.md 1.3
+// are cited where they decide something.
 #include "slc/parser.h"
 
 #include <algorithm>
@@ -27,8 +27,10 @@ constexpr ShaderWord shader_words[] = {
     {"imager", SL_SHADER_imager},   {"transformation", SL_SHADER_transformation}};
 
 const ShaderWord* shader_word(const Token& token) {
-    const auto* const it = std::find_if(std::begin(shader_words), std::end(shader_words),
-                                 [&](const ShaderWord& w) { return token.kind == Tok::Name && w.text == token.text; });
+    const auto* const it =
+        std::find_if(std::begin(shader_words), std::end(shader_words), [&](const ShaderWord& w) {
+            return token.kind == Tok::Name && w.text == token.text;
+        });
     return it == std::end(shader_words) ? nullptr : it;
 }
 
@@ -36,15 +38,24 @@ const ShaderWord* shader_word(const Token& token) {
 
 std::optional<Type> type_of_word(Tok kind) {
     switch (kind) {
-    case Tok::WordFloat: return Type::Float;
-    case Tok::WordColor: return Type::Color;
-    case Tok::WordPoint: return Type::Point;
-    case Tok::WordVector: return Type::Vector;
-    case Tok::WordNormal: return Type::Normal;
-    case Tok::WordMatrix: return Type::Matrix;
-    case Tok::WordString: return Type::String;
-    case Tok::WordVoid: return Type::Void;
-    default: return std::nullopt;
+    case Tok::WordFloat:
+        return Type::Float;
+    case Tok::WordColor:
+        return Type::Color;
+    case Tok::WordPoint:
+        return Type::Point;
+    case Tok::WordVector:
+        return Type::Vector;
+    case Tok::WordNormal:
+        return Type::Normal;
+    case Tok::WordMatrix:
+        return Type::Matrix;
+    case Tok::WordString:
+        return Type::String;
+    case Tok::WordVoid:
+        return Type::Void;
+    default:
+        return std::nullopt;
     }
 }
 
@@ -54,7 +65,8 @@ Parser::Nest::Nest(Parser& parser) : parser_(parser) {
         --parser_.depth_; // the destructor will not run
         if (!parser_.stopped_) {
             parser_.messages_.error(at.loc,
-                                    "nested more than " + std::to_string(max_nesting) + " deep, the rest is not read",
+                                    "nested more than " + std::to_string(max_nesting) +
+                                        " deep, the rest is not read",
                                     base::Code::Limit);
         }
         parser_.stop();
@@ -202,7 +214,9 @@ Function* Parser::function_def() {
     Function& function = file_->functions.emplace_back();
     function.result = spec.type;
     function.loc = peek().loc;
-    function.name = expect(Tok::Name, spec.type ? "of a function" : "or a type, to begin a shader or function").text;
+    function.name =
+        expect(Tok::Name, spec.type ? "of a function" : "or a type, to begin a shader or function")
+            .text;
     expect(Tok::LeftParen, "after the name of a function");
     fn_formals(function);
     expect(Tok::RightParen, "after the formal parameters");
@@ -234,7 +248,8 @@ Parser::TypeSpec Parser::typespec(bool output_allowed) {
 }
 
 bool Parser::at_formal_group() const {
-    return is(Tok::WordOutput) || is(Tok::WordUniform) || is(Tok::WordVarying) || type_of_word(peek().kind);
+    return is(Tok::WordOutput) || is(Tok::WordUniform) || is(Tok::WordVarying) ||
+           type_of_word(peek().kind);
 }
 
 // shader-formals = { ";" } shader-formal { ";" { ";" } shader-formal } { ";" }
@@ -254,8 +269,8 @@ void Parser::shader_formals(ast::Shader& shader) {
             if (is(Tok::Assign)) {
                 initialiser(variable);
             } else {
-                messages_.error(variable.symbol->loc,
-                                "parameter " + quoted(variable.symbol->name) + " has no default value; write = ...");
+                messages_.error(variable.symbol->loc, "parameter " + quoted(variable.symbol->name) +
+                                                          " has no default value; write = ...");
             }
             shader.params.push_back(std::move(variable));
         } while (accept(Tok::Comma) && !at_formal_group());
@@ -352,14 +367,20 @@ void Parser::array_init(Variable& variable) {
     expect(Tok::RightBrace, "after the elements of an array");
     const int given = static_cast<int>(variable.elements.size());
     if (symbol.array_length == 0) {
-        messages_.error(open.loc, quoted(symbol.name) + " is not an array, but is given a list of values");
+        messages_.error(open.loc,
+                        quoted(symbol.name) + " is not an array, but is given a list of values");
     } else if (given == 0) {
         messages_.error(open.loc, "an array has at least one element");
     } else if (symbol.array_length == ast::unsized_array) {
         symbol.array_length = given;
-    } else if (symbol.array_length != given) {
-        messages_.error(open.loc, "array " + quoted(symbol.name) + " has " + std::to_string(symbol.array_length) +
-                                      " elements, but " + std::to_string(given) + " are given");
+    } else if (symbol.array_length < given) {
+        messages_.error(open.loc, "array " + quoted(symbol.name) + " has " +
+                                      std::to_string(symbol.array_length) + " elements, but " +
+                                      std::to_string(given) + " are given");
+    } else if (symbol.array_length > given) {
+        messages_.warning(open.loc, "array " + quoted(symbol.name) + " has " +
+                                        std::to_string(symbol.array_length) + " elements, but " +
+                                        std::to_string(given) + " are given; the rest is 0");
     }
 }
 

@@ -10,11 +10,13 @@
 
 namespace slc {
 
-constexpr int max_nesting = 256;      // statements and expressions inside each other
-constexpr int max_chain = 1000;       // operators in one expression of equal rank: a + b + c ...
+constexpr int max_nesting = 256; // statements and expressions inside each other
+constexpr int max_chain = 1000;  // operators in one expression of equal rank: a + b + c ...
 constexpr int max_array_length = 65536;
 
-// Never fails: after an error it goes on at the next statement or definition. Errors are in `messages`.
-[[nodiscard]] std::unique_ptr<ast::File> parse(const std::vector<Token>& tokens, Messages& messages);
+// Never fails: after an error it goes on at the next statement or definition. Errors are in
+// `messages`.
+[[nodiscard]] std::unique_ptr<ast::File> parse(const std::vector<Token>& tokens,
+                                               Messages& messages);
 
 } // namespace slc

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Productions for expressions, sl.md 1.3 and 1.4. Binary operators go by a table of ranks instead of one function
-// per rank: parentheses then cost five calls per level, not fifteen.
+// Productions for expressions, sl.md 1.3 and 1.4. Binary operators go by a table of ranks instead
+// of one function per rank: parentheses then cost five calls per level, not fifteen.
 #include "slc/parser.h"
 
 #include <numbers>
@@ -20,11 +20,11 @@ struct BinaryRank {
 
 // Cross is below * and /, dot above (sl.md 1.4).
 constexpr BinaryRank ranks[] = {
-    {Tok::Or, Op::Or, 1},         {Tok::And, Op::And, 2},       {Tok::Equal, Op::Eq, 3},
-    {Tok::NotEqual, Op::Ne, 3},   {Tok::Less, Op::Lt, 4},       {Tok::LessEqual, Op::Le, 4},
-    {Tok::Greater, Op::Gt, 4},    {Tok::GreaterEqual, Op::Ge, 4}, {Tok::Plus, Op::Add, 5},
-    {Tok::Minus, Op::Sub, 5},     {Tok::Caret, Op::Cross, 6},   {Tok::Star, Op::Mul, 7},
-    {Tok::Slash, Op::Div, 7},     {Tok::Dot, Op::Dot, 8}};
+    {Tok::Or, Op::Or, 1},       {Tok::And, Op::And, 2},         {Tok::Equal, Op::Eq, 3},
+    {Tok::NotEqual, Op::Ne, 3}, {Tok::Less, Op::Lt, 4},         {Tok::LessEqual, Op::Le, 4},
+    {Tok::Greater, Op::Gt, 4},  {Tok::GreaterEqual, Op::Ge, 4}, {Tok::Plus, Op::Add, 5},
+    {Tok::Minus, Op::Sub, 5},   {Tok::Caret, Op::Cross, 6},     {Tok::Star, Op::Mul, 7},
+    {Tok::Slash, Op::Div, 7},   {Tok::Dot, Op::Dot, 8}};
 
 const BinaryRank* binary_rank(Tok kind) {
     for (const BinaryRank& r : ranks) {
@@ -37,12 +37,18 @@ const BinaryRank* binary_rank(Tok kind) {
 
 std::optional<Op> assignment_op(Tok kind) {
     switch (kind) {
-    case Tok::Assign: return Op::Copy;
-    case Tok::PlusAssign: return Op::Add;
-    case Tok::MinusAssign: return Op::Sub;
-    case Tok::StarAssign: return Op::Mul;
-    case Tok::SlashAssign: return Op::Div;
-    default: return std::nullopt;
+    case Tok::Assign:
+        return Op::Copy;
+    case Tok::PlusAssign:
+        return Op::Add;
+    case Tok::MinusAssign:
+        return Op::Sub;
+    case Tok::StarAssign:
+        return Op::Mul;
+    case Tok::SlashAssign:
+        return Op::Div;
+    default:
+        return std::nullopt;
     }
 }
 
@@ -89,14 +95,17 @@ Expr* Parser::ternary() {
     return e;
 }
 
-// or-expr = and-expr { "||" and-expr } ... dot-expr = unary { "." unary }: all ranks from `lowest` up
+// or-expr = and-expr { "||" and-expr } ... dot-expr = unary { "." unary }: all ranks from `lowest`
+// up
 Expr* Parser::binary(int lowest) {
     Expr* left = unary();
     int chain = 0;
     for (const BinaryRank* r = binary_rank(peek().kind); r != nullptr && r->rank >= lowest;
          r = binary_rank(peek().kind)) {
         if (++chain > max_chain) {
-            messages_.error(peek().loc, "more than " + std::to_string(max_chain) + " operators in one expression",
+            messages_.error(peek().loc,
+                            "more than " + std::to_string(max_chain) +
+                                " operators in one expression",
                             base::Code::Limit);
             throw SyntaxError{};
         }
@@ -146,7 +155,8 @@ Expr* Parser::cast() {
     return e;
 }
 
-// primary = NUMBER | STRING { STRING } | IDENT [ "[" expr "]" ] | call | "(" expr ")" | triple | sixteen
+// primary = NUMBER | STRING { STRING } | IDENT [ "[" expr "]" ] | call | "(" expr ")" | triple |
+// sixteen
 Expr* Parser::primary() {
     switch (peek().kind) {
     case Tok::Number: {
@@ -155,10 +165,14 @@ Expr* Parser::primary() {
         e->number = token.number;
         return e;
     }
-    case Tok::Text: return string_literal();
-    case Tok::Name: return name_or_call();
-    case Tok::LeftParen: return parenthesised();
-    default: fail(peek(), "expected an expression");
+    case Tok::Text:
+        return string_literal();
+    case Tok::Name:
+        return name_or_call();
+    case Tok::LeftParen:
+        return parenthesised();
+    default:
+        fail(peek(), "expected an expression");
     }
 }
 
@@ -185,7 +199,8 @@ Expr* Parser::parenthesised() {
     }
     expect(Tok::RightParen, "after the values in parentheses");
     if (e->args.size() != 3 && e->args.size() != 16) {
-        messages_.error(open.loc, "values in parentheses are 1, 3 or 16, not " + std::to_string(e->args.size()));
+        messages_.error(open.loc, "values in parentheses are 1, 3 or 16, not " +
+                                      std::to_string(e->args.size()));
         throw SyntaxError{};
     }
     return e;
@@ -249,11 +264,16 @@ std::optional<double> Parser::constant_value(const Expr& e) const {
         return std::nullopt;
     }
     switch (e.op) {
-    case Op::Add: return *a + *b;
-    case Op::Sub: return *a - *b;
-    case Op::Mul: return *a * *b;
-    case Op::Div: return *b != 0 ? std::optional(*a / *b) : std::nullopt;
-    default: return std::nullopt;
+    case Op::Add:
+        return *a + *b;
+    case Op::Sub:
+        return *a - *b;
+    case Op::Mul:
+        return *a * *b;
+    case Op::Div:
+        return *b != 0 ? std::optional(*a / *b) : std::nullopt;
+    default:
+        return std::nullopt;
     }
 }
 

@@ -33,11 +33,14 @@ ast::Stmt* Parser::statement() {
     return statement_at();
 }
 
-// statement = ";" | "{" { statement } "}" | var-decl ";" | function-def | expr ";" | "if" ... (one branch each)
+// statement = ";" | "{" { statement } "}" | var-decl ";" | function-def | expr ";" | "if" ... (one
+// branch each)
 ast::Stmt* Parser::statement_at() {
     const Loc loc = peek().loc;
     switch (peek().kind) {
-    case Tok::Semicolon: take(); return new_stmt(StmtKind::Empty, loc);
+    case Tok::Semicolon:
+        take();
+        return new_stmt(StmtKind::Empty, loc);
     case Tok::LeftBrace: {
         take();
         ast::Stmt* block = new_stmt(StmtKind::Block, loc);
@@ -45,20 +48,32 @@ ast::Stmt* Parser::statement_at() {
         expect(Tok::RightBrace, "at the end of a block");
         return block;
     }
-    case Tok::WordIf: return if_statement();
-    case Tok::WordWhile: return while_statement();
-    case Tok::WordFor: return for_statement();
+    case Tok::WordIf:
+        return if_statement();
+    case Tok::WordWhile:
+        return while_statement();
+    case Tok::WordFor:
+        return for_statement();
     case Tok::WordBreak:
-    case Tok::WordContinue: return jump();
-    case Tok::WordReturn: return return_statement();
-    case Tok::WordSolar: return light_statement(StmtKind::Solar, 0, 2);
-    case Tok::WordIlluminate: return light_statement(StmtKind::Illuminate, 1, 3);
-    case Tok::WordIlluminance: return light_statement(StmtKind::Illuminance, 1, 64);
-    case Tok::WordExtern: return declaration();
+    case Tok::WordContinue:
+        return jump();
+    case Tok::WordReturn:
+        return return_statement();
+    case Tok::WordSolar:
+        return light_statement(StmtKind::Solar, 0, 2);
+    case Tok::WordIlluminate:
+        return light_statement(StmtKind::Illuminate, 1, 3);
+    case Tok::WordIlluminance:
+        return light_statement(StmtKind::Illuminance, 1, 64);
+    case Tok::WordExtern:
+        return declaration();
     case Tok::WordUniform:
-    case Tok::WordVarying: return typed_statement();
-    case Tok::WordElse: fail(peek(), "'else' without 'if'");
-    default: break;
+    case Tok::WordVarying:
+        return typed_statement();
+    case Tok::WordElse:
+        fail(peek(), "'else' without 'if'");
+    default:
+        break;
     }
     if (type_of_word(peek().kind)) {
         return typed_statement();
@@ -69,19 +84,22 @@ ast::Stmt* Parser::statement_at() {
     return at_function_def() ? nested_function() : expression_statement();
 }
 
-// After a type: IDENT "(" ... ")" "{" is a function, STRING or "(" a cast, IDENT a declaration (note 10).
+// After a type: IDENT "(" ... ")" "{" is a function, STRING or "(" a cast, IDENT a declaration
+// (note 10).
 ast::Stmt* Parser::typed_statement() {
     if (at_function_def()) {
         return nested_function();
     }
     const bool has_detail = is(Tok::WordUniform) || is(Tok::WordVarying);
     const std::size_t after_type = has_detail ? 2 : 1;
-    const bool is_cast = !has_detail && (is(Tok::Text, after_type) || is(Tok::LeftParen, after_type) ||
-                                         (is(Tok::Name, after_type) && is(Tok::LeftParen, after_type + 1)));
+    const bool is_cast =
+        !has_detail && (is(Tok::Text, after_type) || is(Tok::LeftParen, after_type) ||
+                        (is(Tok::Name, after_type) && is(Tok::LeftParen, after_type + 1)));
     return is_cast ? expression_statement() : declaration();
 }
 
-// [ [ detail ] type ] IDENT "(" ... ")" "{"; a function without type looks like a call until the brace
+// [ [ detail ] type ] IDENT "(" ... ")" "{"; a function without type looks like a call until the
+// brace
 bool Parser::at_function_def() const {
     std::size_t i = 0;
     i += is(Tok::WordUniform, i) || is(Tok::WordVarying, i) ? 1 : 0;
@@ -116,8 +134,8 @@ ast::Stmt* Parser::declaration() {
             initialiser(variable);
         }
         if (variable.symbol->array_length == ast::unsized_array && !is_extern) {
-            messages_.error(variable.symbol->loc,
-                            "array " + quoted(variable.symbol->name) + " needs a length or a list of values");
+            messages_.error(variable.symbol->loc, "array " + quoted(variable.symbol->name) +
+                                                      " needs a length or a list of values");
             variable.symbol->array_length = 1;
         }
         s->variables.push_back(std::move(variable));
@@ -198,7 +216,8 @@ ast::Stmt* Parser::for_statement() {
 // "break" [ NUMBER ] ";" | "continue" [ NUMBER ] ";"
 ast::Stmt* Parser::jump() {
     const Token& word = take();
-    ast::Stmt* s = new_stmt(word.kind == Tok::WordBreak ? StmtKind::Break : StmtKind::Continue, word.loc);
+    ast::Stmt* s =
+        new_stmt(word.kind == Tok::WordBreak ? StmtKind::Break : StmtKind::Continue, word.loc);
     if (!is(Tok::Semicolon)) {
         const Token& at = peek();
         const std::optional<double> levels = constant_value(*expr());
@@ -235,8 +254,9 @@ ast::Stmt* Parser::light_statement(StmtKind kind, std::size_t min_args, std::siz
     const bool fits = kind == StmtKind::Illuminance ? n >= min_args && n <= max_args
                                                     : n == min_args || n == max_args;
     if (!fits) {
-        messages_.error(word.loc, quoted(word.text) + " takes " + std::to_string(min_args) + " or " +
-                                      std::to_string(max_args) + " arguments, not " + std::to_string(n));
+        messages_.error(word.loc, quoted(word.text) + " takes " + std::to_string(min_args) +
+                                      " or " + std::to_string(max_args) + " arguments, not " +
+                                      std::to_string(n));
         throw SyntaxError{};
     }
     s->body.push_back(statement());

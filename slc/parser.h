@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parser's class, shared by parse.cpp (definitions), parse_stmt.cpp and parse_expr.cpp. Internal.
-// Every parse function carries its production of sl.md 1.3 and starts at the production's first token.
+// The parser's class, shared by parse.cpp (definitions), parse_stmt.cpp and parse_expr.cpp.
+// Internal. Every parse function carries its production of sl.md 1.3 and starts at the production's
+// first token.
 #pragma once
 
 #include "slc/parse.h"
@@ -16,7 +17,8 @@ public:
 private:
     struct SyntaxError {}; // thrown after a message, caught where parsing can go on
 
-    // One level of nesting; the limit ends parsing, since every level costs machine stack in all later stages.
+    // One level of nesting; the limit ends parsing, since every level costs machine stack in all
+    // later stages.
     class Nest {
     public:
         explicit Nest(Parser& parser);
@@ -30,7 +32,9 @@ private:
 
     // Tokens
     [[nodiscard]] const Token& peek(std::size_t ahead = 0) const;
-    [[nodiscard]] bool is(Tok kind, std::size_t ahead = 0) const { return peek(ahead).kind == kind; }
+    [[nodiscard]] bool is(Tok kind, std::size_t ahead = 0) const {
+        return peek(ahead).kind == kind;
+    }
     const Token& take();
     bool accept(Tok kind);
     const Token& expect(Tok kind, std::string_view where);

@@ -5,10 +5,9 @@
 //   x = copy k2                  ->   x = copy k2
 //   Ci = copy x                       Ci = copy x
 // Needs: nothing. Provides: exact needed variables for analyse(). Spoils: nothing.
+#include "slc/ir_util.h"
 #include "slc/liveness.h"
 #include "slc/passes.h"
-
-#include "slc/ir_util.h"
 
 #include <algorithm>
 
@@ -63,7 +62,9 @@ void mark(const Block& b, std::vector<bool>& used) {
 
 void renumber(Block& b, const std::vector<VarId>& to) {
     for (Stmt& s : b) {
-        const auto move = [&](VarId& id) { id = id == no_var ? no_var : to[static_cast<std::size_t>(id)]; };
+        const auto move = [&](VarId& id) {
+            id = id == no_var ? no_var : to[static_cast<std::size_t>(id)];
+        };
         for (VarId& id : s.args) {
             move(id);
         }

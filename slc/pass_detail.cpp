@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Uniform or varying (sl.md 2.3): locals and temporaries start uniform and become varying when they are given a varying
-// value, or are assigned where not all points go the same way.
+// Uniform or varying (sl.md 2.3): locals and temporaries start uniform and become varying when they
+// are given a varying value, or are assigned where not all points go the same way.
 //   var x local varying float          var x local uniform float
 //   x = add Kd k1                 ->   x = add Kd k1
-// A variable declared uniform that gets a varying value becomes varying too, with a warning: the value of the
-// "current point" (sl.md 2.2), and results do not depend on which points share a packet (slc-004).
-// Needs: nothing. Provides: Var::detail. Spoils: nothing.
-#include "slc/passes.h"
-
+// A variable declared uniform that gets a varying value becomes varying too, with a warning: the
+// value of the "current point" (sl.md 2.2), and results do not depend on which points share a
+// packet (slc-004). Needs: nothing. Provides: Var::detail. Spoils: nothing.
 #include "slc/ir_util.h"
+#include "slc/passes.h"
 
 #include <algorithm>
 #include <unordered_set>
@@ -19,7 +18,8 @@ namespace {
 
 class DetailInference {
 public:
-    DetailInference(Program& program, Messages* messages) : program_(program), messages_(messages) {}
+    DetailInference(Program& program, Messages* messages)
+        : program_(program), messages_(messages) {}
     void run();
 
 private:
@@ -40,7 +40,9 @@ private:
     [[nodiscard]] bool varying_value(const Stmt& s) const;
     [[nodiscard]] bool varying_control() const;
     [[nodiscard]] bool is_varying(VarId id) const { return var(id).detail == Detail::Varying; }
-    [[nodiscard]] const Var& var(VarId id) const { return program_.vars[static_cast<std::size_t>(id)]; }
+    [[nodiscard]] const Var& var(VarId id) const {
+        return program_.vars[static_cast<std::size_t>(id)];
+    }
     void warn(VarId id, Loc loc);
 
     Program& program_;
@@ -64,7 +66,8 @@ void DetailInference::run() {
 }
 
 bool DetailInference::varying_control() const {
-    return varying_ || std::any_of(frames_.begin(), frames_.end(), [](const Frame& f) { return f.diverged || f.skipping; });
+    return varying_ || std::any_of(frames_.begin(), frames_.end(),
+                                   [](const Frame& f) { return f.diverged || f.skipping; });
 }
 
 void DetailInference::block(const Block& b) {
@@ -75,8 +78,12 @@ void DetailInference::block(const Block& b) {
 
 void DetailInference::statement(const Stmt& s) {
     switch (s.op) {
-    case Op::If: bodies(s, is_varying(s.args[0])); break;
-    case Op::Loop: loop(s); break;
+    case Op::If:
+        bodies(s, is_varying(s.args[0]));
+        break;
+    case Op::Loop:
+        loop(s);
+        break;
     case Op::Scope:
         frames_.push_back({&s, false, false, false});
         block(s.bodies[0]);
@@ -89,12 +96,20 @@ void DetailInference::statement(const Stmt& s) {
         bodies(s, true);
         frames_.pop_back();
         break;
-    case Op::Illuminate: bodies(s, s.args.size() > 1); break;
-    case Op::Solar: bodies(s, false); break;
+    case Op::Illuminate:
+        bodies(s, s.args.size() > 1);
+        break;
+    case Op::Solar:
+        bodies(s, false);
+        break;
     case Op::Break:
     case Op::Continue:
-    case Op::Leave: jump(s); break;
-    default: assign(s); break;
+    case Op::Leave:
+        jump(s);
+        break;
+    default:
+        assign(s);
+        break;
     }
 }
 
@@ -156,8 +171,9 @@ bool DetailInference::varying_value(const Stmt& s) const {
     const std::uint64_t state = row.reads & ~(1ull << SL_VAR_du | 1ull << SL_VAR_dv);
     bool reads_varying = row.has(PropVaries) || row.has(PropSpaces);
     for (int i = 0; i < SL_VAR_COUNT; ++i) {
-        reads_varying = reads_varying || ((state >> i & 1) != 0 &&
-                                          variable_rows()[static_cast<std::size_t>(i)].detail == Detail::Varying);
+        reads_varying = reads_varying ||
+                        ((state >> i & 1) != 0 &&
+                         variable_rows()[static_cast<std::size_t>(i)].detail == Detail::Varying);
     }
     return varying || reads_varying;
 }
@@ -180,7 +196,8 @@ void DetailInference::raise(VarId id, const Stmt& s, bool by_message) {
     }
     v.detail = Detail::Varying;
     changed_ = true;
-    const bool expected = v.kind == VarKind::Temp || (v.kind == VarKind::Local && !v.declared_uniform);
+    const bool expected =
+        v.kind == VarKind::Temp || (v.kind == VarKind::Local && !v.declared_uniform);
     if (!expected && !by_message) {
         warn(id, s.loc);
     }
@@ -192,13 +209,19 @@ void DetailInference::warn(VarId id, Loc loc) {
     }
     const Var& v = var(id);
     const bool is_param = v.kind == VarKind::Param;
-    messages_->warning_once(loc, std::string(is_param ? "uniform parameter " : "uniform variable ") + quoted(v.name) +
-                                     " is assigned a varying value, or where points take different ways; it becomes varying" +
-                                     (is_param && !v.declared_uniform ? " (parameters are uniform unless declared varying)" : ""));
+    messages_->warning_once(
+        loc,
+        std::string(is_param ? "uniform parameter " : "uniform variable ") + quoted(v.name) +
+            " is assigned a varying value, or where points take different ways; it becomes "
+            "varying" +
+            (is_param && !v.declared_uniform ? " (parameters are uniform unless declared varying)"
+                                             : ""));
 }
 
 } // namespace
 
-void pass_detail(Program& program, Messages* messages) { DetailInference(program, messages).run(); }
+void pass_detail(Program& program, Messages* messages) {
+    DetailInference(program, messages).run();
+}
 
 } // namespace slc

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Passes change the program and say which facts they spoil; analyses never change it. The order is in pipeline.cpp.
+// Passes change the program and say which facts they spoil; analyses never change it. The order is
+// in pipeline.cpp.
 #pragma once
 
 #include "slc/ir.h"

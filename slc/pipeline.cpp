@@ -6,7 +6,8 @@
 namespace slc {
 
 namespace {
-constexpr int max_rounds = 4; // of the simplifying passes; each round feeds the next, four settle real shaders
+constexpr int max_rounds =
+    4; // of the simplifying passes; each round feeds the next, four settle real shaders
 } // namespace
 
 void run_passes(Program& program, const CompileOptions& options, Messages* messages) {

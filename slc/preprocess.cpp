@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs `cc -E` on text given on standard input; a leading line marker gives it its name, -iquote its directory.
+// Runs `cc -E` on text given on standard input; a leading line marker gives it its name, -iquote
+// its directory.
 #include "slc/preprocess.h"
 
 #include "slc/process.h"
@@ -14,8 +15,10 @@ namespace {
 std::vector<std::string> arguments(const std::string& compiler, const std::string& name,
                                    const CompileOptions& options) {
     const std::string directory = directory_of(name);
-    std::vector<std::string> argv = {compiler, "-E", "-x", "c", "-std=gnu99", "-undef", "-nostdinc",
-                                     "-fno-diagnostics-show-option", "-DPERIGEE=1", "-DBMRT=1"};
+    std::vector<std::string> argv = {
+        compiler,      "-E",      "-x",        "c",
+        "-std=gnu99",  "-undef",  "-nostdinc", "-fno-diagnostics-show-option",
+        "-DPERIGEE=1", "-DBMRT=1"};
     for (const std::string& define : options.defines) {
         argv.push_back("-D" + define);
     }
@@ -97,8 +100,7 @@ bool relay(std::string_view err, Messages& messages) {
         }
         const Loc loc{messages.sources().add(message->file), message->line, message->col};
         // sl.md 1.2: unknown directives are only warned about.
-        const bool unknown_directive =
-            message->text.starts_with("invalid preprocessing directive");
+        const bool unknown_directive = message->text.starts_with("invalid preprocessing directive");
         if (message->kind == "warning" || unknown_directive) {
             messages.warning(loc, message->text);
         } else {
@@ -141,7 +143,8 @@ std::optional<std::string> preprocess(std::string_view text, const std::string& 
     }
     const bool ok = relay(result.err, messages);
     if (result.cut_off || result.exit_code < 0) {
-        messages.error(Loc{0, 1, 1}, "the preprocessor was stopped: its output or its time has no bound",
+        messages.error(Loc{0, 1, 1},
+                       "the preprocessor was stopped: its output or its time has no bound",
                        base::Code::Limit);
         return std::nullopt;
     }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// posix_spawn with both output streams on pipes that are drained together, so that neither can block the program.
+// posix_spawn with both output streams on pipes that are drained together, so that neither can
+// block the program.
 #include "slc/process.h"
 
 #include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
-
 #include <fcntl.h>
 #include <poll.h>
 #include <spawn.h>
@@ -157,8 +157,7 @@ ProcessResult run_process(const std::vector<std::string>& argv, std::string_view
     posix_spawn_file_actions_adddup2(&actions, err.write.get(), 2);
     std::vector<char*> env = english_environment();
     pid_t child = 0;
-    const int status =
-        posix_spawnp(&child, args[0], &actions, nullptr, args.data(), env.data());
+    const int status = posix_spawnp(&child, args[0], &actions, nullptr, args.data(), env.data());
     posix_spawn_file_actions_destroy(&actions);
     if (status != 0) {
         return result;

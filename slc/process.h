@@ -15,14 +15,14 @@ struct ProcessLimits {
 };
 
 struct ProcessResult {
-    bool started = false;   // false: not found or not executable
-    bool cut_off = false;   // a limit was reached
-    int exit_code = -1;     // -1: ended by a signal
+    bool started = false; // false: not found or not executable
+    bool cut_off = false; // a limit was reached
+    int exit_code = -1;   // -1: ended by a signal
     std::string out, err;
 };
 
 // argv[0] is looked up on PATH. Messages of the program are asked for in English (LC_ALL=C).
-[[nodiscard]] ProcessResult run_process(const std::vector<std::string>& argv, std::string_view input,
-                                        const ProcessLimits& limits = {});
+[[nodiscard]] ProcessResult run_process(const std::vector<std::string>& argv,
+                                        std::string_view input, const ProcessLimits& limits = {});
 
 } // namespace slc

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What names mean at one place of the source: variables and functions, in separate name spaces (sl.md 1.1, 1.5).
-// A stack of lexical levels above the predefined variables. A function body is a boundary: names found beyond it
-// need `extern` by the rules, and are used with a warning without it.
+// What names mean at one place of the source: variables and functions, in separate name spaces
+// (sl.md 1.1, 1.5). A stack of lexical levels above the predefined variables. A function body is a
+// boundary: names found beyond it need `extern` by the rules, and are used with a warning without
+// it.
 #pragma once
 
 #include "slc/ast.h"
@@ -21,10 +22,12 @@ public:
 
     struct Found {
         ast::Symbol* symbol = nullptr;
-        bool beyond_function = false; // outside the innermost function body, and not declared extern there
+        bool beyond_function =
+            false; // outside the innermost function body, and not declared extern there
     };
     [[nodiscard]] Found find(std::string_view name) const;
-    // As `extern` looks: past the innermost function body, or past the innermost level outside functions.
+    // As `extern` looks: past the innermost function body, or past the innermost level outside
+    // functions.
     [[nodiscard]] ast::Symbol* find_outer(std::string_view name) const;
     // False when the innermost level already has the name.
     bool declare(std::string_view name, ast::Symbol* symbol);

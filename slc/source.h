@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where source text comes from: the files of one compilation, by index, with their lines for messages and column
-// mapping. Index 0 is the main file. Included files are read from disk when one of their lines is first wanted.
+// Where source text comes from: the files of one compilation, by index, with their lines for
+// messages and column mapping. Index 0 is the main file. Included files are read from disk when one
+// of their lines is first wanted.
 #pragma once
 
 #include <cstdint>

@@ -25,8 +25,8 @@ V3d turned(const V3d& p) {
 Revolution::Revolution(double thetamax_deg)
     : thetamax_(std::clamp(thetamax_deg, -360.0, 360.0) * std::numbers::pi / 180) {}
 
-// A ring's extent along an axis is its radius times the length of that row of the transform, [Arvo
-// 90] style.
+// A ring's extent along an axis is its radius times the length of the transform's part that acts
+// on its plane, per axis.
 Box Revolution::bound(const Mat4& dst_from_object) const {
     const auto& m = dst_from_object.m;
     Box box;

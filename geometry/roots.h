@@ -17,7 +17,7 @@ struct Roots {
     [[nodiscard]] const double* end() const { return t.data() + count; }
 };
 
-// a t^2 + 2 b t + c = 0 (note the 2). Stable for a -> 0, where it becomes linear. [NR 5.6]
+// a t^2 + 2 b t + c = 0 (note the 2). Stable for a -> 0, where it becomes linear.
 [[nodiscard]] Roots solve_quadratic(double a, double b, double c);
 
 // c[0] + c[1] t + ... + c[4] t^4 = 0 within [t0, t1]. Isolates roots between the roots of the

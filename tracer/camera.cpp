@@ -221,7 +221,6 @@ void Camera::init_lens(const rib::Options& o, base::Diag& diag) {
     lens_radius_ = static_cast<double>(o.focal_length) / (2 * static_cast<double>(o.fstop));
     focal_distance_ =
         o.focal_distance >= rib::ri_infinity ? inf : static_cast<double>(o.focal_distance);
-    simple_ = false;
 }
 
 void Camera::init_planes(const rib::Options& o) {

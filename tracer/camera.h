@@ -106,14 +106,14 @@ private:
     void init_planes(const rib::Options& options);
     void clip(Ray& ray) const;
     void clip_half_space(Ray& ray, const Plane& plane) const;
-    [[nodiscard]] Ray lens_ray(Ray ray, float lens_u, float lens_v) const;
+    [[nodiscard]] Ray lens_ray(Ray ray, float lens_x, float lens_y) const;
     void make_simple_packet(const SampleBlock& block, std::size_t first, geo::RayPacket& out) const;
     void make_general_packet(const SampleBlock& block, std::size_t first,
                              geo::RayPacket& out) const;
 
     Raster raster_;
     bool perspective_ = false;
-    bool simple_ = true; // origin z = 0, direction z = 1, no planes, no lens: the vectorised path
+    bool simple_ = true; // origin z = 0, direction z = 1, no planes: the vectorised path
     double near_ = 0, far_ = 0;
     double lens_radius_ = 0, focal_distance_ = 0;
     float unit_per_px_ = 1;

@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace trace {
 
@@ -27,30 +26,21 @@ using Double4 [[gnu::vector_size(32)]] = double;
 using Float4 [[gnu::vector_size(16)]] = float;
 using Int4 [[gnu::vector_size(16)]] = std::int32_t;
 
-template <class Vector, class Scalar> Vector load(const Scalar* from) {
-    Vector v;
+Double4 widened(const std::int32_t* from) {
+    Int4 v;
     __builtin_memcpy(&v, from, sizeof v);
-    return v;
+    return __builtin_convertvector(v, Double4);
+}
+
+Double4 widened(const float* from) {
+    Float4 v;
+    __builtin_memcpy(&v, from, sizeof v);
+    return __builtin_convertvector(v, Double4);
 }
 
 void store(float* to, const Double4& v) {
     const Float4 rounded = __builtin_convertvector(v, Float4);
     __builtin_memcpy(to, &rounded, sizeof rounded);
-}
-
-// From the unit square to the unit disc, area preserving and continuous ([pbrt4] A.5.1).
-void disc_point(double u, double v, double& x, double& y) {
-    const double a = 2 * u - 1, b = 2 * v - 1;
-    if (a == 0 && b == 0) {
-        x = y = 0;
-        return;
-    }
-    const bool wide = std::fabs(a) > std::fabs(b);
-    const double r = wide ? a : b;
-    const double angle = wide ? std::numbers::pi / 4 * (b / a)
-                              : std::numbers::pi / 2 - std::numbers::pi / 4 * (a / b);
-    x = r * std::cos(angle);
-    y = r * std::sin(angle);
 }
 
 } // namespace
@@ -96,9 +86,8 @@ void Camera::normalise_depth() {
         direction_.v0.z = 1; // exactly
     }
     const bool level = origin_.vx.z == 0 && origin_.vy.z == 0;
-    if (flat && level) {
-        origin_.v0 =
-            origin_.v0 - origin_.v0.z * direction_.v0; // parallel rays: start in the plane z = 0
+    if (flat && level && !perspective_) {
+        origin_.v0 = origin_.v0 - origin_.v0.z * direction_.v0; // start in the plane z = 0
     }
     simple_ = simple_ && flat && level && origin_.v0.z == 0;
 }
@@ -138,10 +127,9 @@ void Camera::clip_half_space(Ray& ray, const Plane& plane) const {
 }
 
 // Through a point of the lens and the point of the pinhole ray at the focal distance, ri.md 9.6.
-Camera::Ray Camera::lens_ray(Ray ray, float lens_u, float lens_v) const {
-    base::V3d q;
-    disc_point(static_cast<double>(lens_u), static_cast<double>(lens_v), q.x, q.y);
-    q = q * lens_radius_;
+Camera::Ray Camera::lens_ray(Ray ray, float lens_x, float lens_y) const {
+    const base::V3d q{lens_radius_ * static_cast<double>(lens_x),
+                      lens_radius_ * static_cast<double>(lens_y), 0};
     if (focal_distance_ < inf && ray.direction.z != 0) {
         const double t_focus = (focal_distance_ - ray.origin.z) / ray.direction.z;
         ray.direction = ray.direction - q / t_focus;
@@ -151,18 +139,31 @@ Camera::Ray Camera::lens_ray(Ray ray, float lens_u, float lens_v) const {
     return ray;
 }
 
+// Rays that start in z = 0 with direction z = 1, so that t is camera z and Clipping needs no
+// arithmetic.
 void Camera::make_simple_packet(const SampleBlock& block, std::size_t first,
                                 geo::RayPacket& out) const {
+    const bool lens = lens_radius_ > 0 && !block.lens_x.empty();
     for (std::size_t i = 0; i < geo::RayPacket::size; i += 4) {
         const std::size_t s = first + i;
-        const auto x = __builtin_convertvector(load<Int4>(block.px.data() + s), Double4) +
-                       __builtin_convertvector(load<Float4>(block.x.data() + s), Double4);
-        const auto y = __builtin_convertvector(load<Int4>(block.py.data() + s), Double4) +
-                       __builtin_convertvector(load<Float4>(block.y.data() + s), Double4);
-        store(out.ox + i, origin_.v0.x + x * origin_.vx.x + y * origin_.vy.x);
-        store(out.oy + i, origin_.v0.y + x * origin_.vx.y + y * origin_.vy.y);
-        store(out.dx + i, direction_.v0.x + x * direction_.vx.x + y * direction_.vy.x);
-        store(out.dy + i, direction_.v0.y + x * direction_.vx.y + y * direction_.vy.y);
+        const Double4 x = widened(block.px.data() + s) + widened(block.x.data() + s);
+        const Double4 y = widened(block.py.data() + s) + widened(block.y.data() + s);
+        Double4 ox = origin_.v0.x + x * origin_.vx.x + y * origin_.vy.x;
+        Double4 oy = origin_.v0.y + x * origin_.vx.y + y * origin_.vy.y;
+        Double4 dx = direction_.v0.x + x * direction_.vx.x + y * direction_.vy.x;
+        Double4 dy = direction_.v0.y + x * direction_.vx.y + y * direction_.vy.y;
+        if (lens) {
+            const Double4 qx = lens_radius_ * widened(block.lens_x.data() + s);
+            const Double4 qy = lens_radius_ * widened(block.lens_y.data() + s);
+            ox += qx;
+            oy += qy;
+            dx -= qx / focal_distance_; // infinite: parallel to the pinhole ray
+            dy -= qy / focal_distance_;
+        }
+        store(out.ox + i, ox);
+        store(out.oy + i, oy);
+        store(out.dx + i, dx);
+        store(out.dy + i, dy);
     }
     std::fill_n(out.oz, geo::RayPacket::size, 0.0f);
     std::fill_n(out.dz, geo::RayPacket::size, 1.0f);
@@ -176,8 +177,8 @@ void Camera::make_general_packet(const SampleBlock& block, std::size_t first,
         const std::size_t s = first + i;
         Ray ray = pinhole_ray(block.px[s] + static_cast<double>(block.x[s]),
                               block.py[s] + static_cast<double>(block.y[s]));
-        if (lens_radius_ > 0 && !block.lens_u.empty()) {
-            ray = lens_ray(ray, block.lens_u[s], block.lens_v[s]);
+        if (lens_radius_ > 0 && !block.lens_x.empty()) {
+            ray = lens_ray(ray, block.lens_x[s], block.lens_y[s]);
         }
         out.ox[i] = static_cast<float>(ray.origin.x);
         out.oy[i] = static_cast<float>(ray.origin.y);

@@ -373,16 +373,17 @@ void Film::filter_pixel(const Sources& from, int x, int y) {
             sum.add(own.buffer->samples[own.first + static_cast<std::size_t>(s)], 1);
         }
     }
-    const float total = sum.high[2];
+    const Float4 low = sum.low / sum.high[2], high = sum.high / sum.high[2];
     const std::size_t at = static_cast<std::size_t>(y - image_.pixels.y0) *
                                static_cast<std::size_t>(image_.pixels.width()) +
                            static_cast<std::size_t>(x - image_.pixels.x0);
-    const float values[] = {sum.low[0] / total, sum.low[1] / total,  sum.low[2] / total,
-                            sum.low[3] / total, sum.high[0] / total, sum.high[1] / total};
-    for (std::size_t p = 0; p < 6; ++p) {
-        image_.planes[p][at] = values[p];
-    }
-    image_.plane(Plane::A)[at] = (values[3] + values[4] + values[5]) / 3;
+    image_.plane(Plane::R)[at] = low[0];
+    image_.plane(Plane::G)[at] = low[1];
+    image_.plane(Plane::B)[at] = low[2];
+    image_.plane(Plane::OR)[at] = low[3];
+    image_.plane(Plane::OG)[at] = high[0];
+    image_.plane(Plane::OB)[at] = high[1];
+    image_.plane(Plane::A)[at] = (low[3] + high[0] + high[1]) / 3;
     image_.plane(Plane::Z)[at] = depth(own);
     for (int c = 0; c < settings_.num_extra; ++c) {
         image_.extra[static_cast<std::size_t>(c)][at] = extra_channel(from, x, y, c, plain);

@@ -23,6 +23,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr double max_width_px = 32;
 constexpr int max_reach = 16; // of that width
+constexpr std::size_t few_samples = 2;
 
 // sin(pi a) / (pi a)
 double sinc(double a) {
@@ -227,6 +228,10 @@ void FilterWeights::fill_sample(const Filter& filter, double x, double y, float*
 }
 
 FilterWeights::Span FilterWeights::used_span(std::span<const float> w) {
+    // With few samples a branch that cannot be predicted costs more than multiplying by zero.
+    if (w.size() <= few_samples) {
+        return {0, static_cast<std::uint16_t>(w.size())};
+    }
     const auto used = [](float x) { return x != 0; };
     const auto first = std::find_if(w.begin(), w.end(), used);
     const auto last = std::find_if(w.rbegin(), std::make_reverse_iterator(first), used).base();

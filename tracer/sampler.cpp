@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <string>
 
@@ -99,15 +100,30 @@ void stratified_times(float open, float close, Random& random, std::span<float> 
     }
 }
 
+// From the unit square to the unit disc, area preserving and continuous ([pbrt4] A.5.1).
+void disc_point(double u, double v, float& x, float& y) {
+    const double a = 2 * u - 1, b = 2 * v - 1;
+    if (a == 0 && b == 0) {
+        x = y = 0;
+        return;
+    }
+    const bool wide = std::fabs(a) > std::fabs(b);
+    const double r = wide ? a : b;
+    const double angle = wide ? std::numbers::pi / 4 * (b / a)
+                              : std::numbers::pi / 2 - std::numbers::pi / 4 * (a / b);
+    x = static_cast<float>(r * std::cos(angle));
+    y = static_cast<float>(r * std::sin(angle));
+}
+
 // Multi-jittered lens points in random order, so that they do not follow the position in the pixel.
-void lens_points(const SamplerSettings& settings, Random& random, std::span<float> u,
-                 std::span<float> v) {
-    std::vector<float> x(u.size()), y(u.size());
-    multi_jitter(settings.nx, settings.ny, 1, random, x, y);
+void lens_points(const SamplerSettings& settings, Random& random, std::span<float> lens_x,
+                 std::span<float> lens_y) {
+    std::vector<float> u(lens_x.size()), v(lens_x.size());
+    multi_jitter(settings.nx, settings.ny, 1, random, u, v);
     const auto order = permutation(u.size(), random);
     for (std::size_t s = 0; s < u.size(); ++s) {
-        u[s] = x[order[s]];
-        v[s] = y[order[s]];
+        disc_point(static_cast<double>(u[order[s]]), static_cast<double>(v[order[s]]), lens_x[s],
+                   lens_y[s]);
     }
 }
 
@@ -155,8 +171,8 @@ Sampler::Sampler(const SamplerSettings& settings)
     x_.resize(num_patterns_ * n);
     y_.resize(num_patterns_ * n);
     time_.resize(moving_ ? num_patterns_ * n : 0);
-    lens_u_.resize(settings.wants_lens ? num_patterns_ * n : 0);
-    lens_v_.resize(lens_u_.size());
+    lens_x_.resize(settings.wants_lens ? num_patterns_ * n : 0);
+    lens_y_.resize(lens_x_.size());
     for (std::size_t p = 0; p < num_patterns_; ++p) {
         Random position(p, Use::Position), time(p, Use::Time), lens(p, Use::Lens);
         multi_jitter(settings.nx, settings.ny, settings.jitter, position,
@@ -166,8 +182,8 @@ Sampler::Sampler(const SamplerSettings& settings)
                              std::span(time_).subspan(p * n, n));
         }
         if (settings.wants_lens) {
-            lens_points(settings, lens, std::span(lens_u_).subspan(p * n, n),
-                        std::span(lens_v_).subspan(p * n, n));
+            lens_points(settings, lens, std::span(lens_x_).subspan(p * n, n),
+                        std::span(lens_y_).subspan(p * n, n));
         }
     }
 }
@@ -202,8 +218,8 @@ void Sampler::fill_pixel(int px, int py, std::size_t at, SampleBlock& out) const
     }
     if (settings_.wants_lens) {
         const std::size_t lens = pixel_hash(px, py, Use::Lens) & pattern_mask_;
-        copy(lens_u_, lens, out.lens_u);
-        copy(lens_v_, lens, out.lens_v);
+        copy(lens_x_, lens, out.lens_x);
+        copy(lens_y_, lens, out.lens_y);
     }
     const std::uint32_t seed = pixel_hash(px, py, Use::Seed);
     std::fill_n(out.px.data() + at, n, px);
@@ -224,8 +240,8 @@ void Sampler::fill(const PixelRange& pixels, SampleBlock& out) const {
     out.y.resize(padded);
     out.time.resize(padded);
     out.seed.resize(padded);
-    out.lens_u.resize(settings_.wants_lens ? padded : 0);
-    out.lens_v.resize(out.lens_u.size());
+    out.lens_x.resize(settings_.wants_lens ? padded : 0);
+    out.lens_y.resize(out.lens_x.size());
     if (!moving_) {
         std::fill(out.time.begin(), out.time.end(), settings_.shutter_open);
     }
@@ -243,7 +259,7 @@ void Sampler::fill(const PixelRange& pixels, SampleBlock& out) const {
         }
     };
     pad(out.px), pad(out.py), pad(out.x), pad(out.y), pad(out.time), pad(out.seed);
-    pad(out.lens_u), pad(out.lens_v);
+    pad(out.lens_x), pad(out.lens_y);
 }
 
 } // namespace trace

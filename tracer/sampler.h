@@ -38,7 +38,7 @@ struct SampleBlock {
     std::vector<std::int32_t> px, py;  // pixel
     std::vector<float> x, y;           // position in the pixel, [0,1)
     std::vector<float> time;           // in [shutter open, close]
-    std::vector<float> lens_u, lens_v; // unit square; empty if no lens was asked for
+    std::vector<float> lens_x, lens_y; // on the unit disc; empty if no lens was asked for
     std::vector<std::uint32_t> seed;   // for random(): differs for every sample of the frame
 
     [[nodiscard]] std::size_t num_packets() const { return (count + 7) / 8; }
@@ -69,7 +69,7 @@ private:
     int per_pixel_ = 4;
     std::size_t num_patterns_ = 1, pattern_mask_ = 0;
     bool moving_ = false;
-    std::vector<float> x_, y_, time_, lens_u_, lens_v_; // [pattern][sample]
+    std::vector<float> x_, y_, time_, lens_x_, lens_y_; // [pattern][sample]
 };
 
 } // namespace trace

@@ -70,6 +70,7 @@ Format {size} {size} 1
 PixelSamples 1 1
 PixelFilter "box" 1 1
 ScreenWindow -1 1 -1 1
+Clipping .5 4.5
 Projection "orthographic"
 Translate 0 0 2
 WorldBegin

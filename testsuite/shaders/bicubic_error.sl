@@ -3,7 +3,8 @@
 // Parameters: order  4 or 2 control points a side
 //             cp     their coordinates, u fastest.
 // Writes (error of P, error of dPdu, error of dPdv), object space.
-surface bicubic_error(float order = 4; float cp[48] = {0};)
+surface bicubic_error(float order = 4; float cp[48] = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
+                                                        0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};)
 {
     float bu[4], bv[4], du_[4], dv_[4];
     if (order == 4) {

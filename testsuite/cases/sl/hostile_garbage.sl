@@ -4,5 +4,6 @@
 // exit: 1
 // message: hostile_garbage\.sl:\d+(:\d+)?: (warning|error): 
 // append: bytes((i * i * 7 + i * 13 + 5) % 255 + 1 for i in range(5000))
+// quiet: error: too many errors
 // timeout: 30
 

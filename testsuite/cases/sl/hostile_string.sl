@@ -3,6 +3,7 @@
 // spec: RI 3.2, Shading Language
 // exit: 1
 // message: hostile_string\.sl:\d+:\d+: error: 
+// quiet: missing terminating
 // timeout: 30
 surface hostile_string()
 {

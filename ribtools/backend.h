@@ -23,6 +23,7 @@ public:
     virtual ~Backend() = default;
     // A world is complete. False asks the reader to stop (interrupted, out of disk ...).
     virtual bool render(std::unique_ptr<Scene> scene) = 0;
+    // Runs at once. False: not made, and the backend has said why; reading goes on.
     virtual bool make_texture(const TextureRequest& request) = 0;
 };
 

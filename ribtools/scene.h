@@ -170,6 +170,7 @@ struct Polygons {
 
 struct Patches { // Patch and PatchMesh
     bool bicubic = false;
+    bool is_mesh = false; // PatchMesh
     int nu = 0, nv = 0; // control points
     bool uperiodic = false, vperiodic = false;
 };
@@ -226,7 +227,8 @@ using Shape = std::variant<Quadric, Polygons, Patches, NuPatch, SubdivisionMesh,
 struct Primitive {
     Shape shape;
     ParamList params; // counts already checked against the shape (ri.md 10.3)
-    // Further keys of a deformation motion block: same topology; empty when still. key 0 is shape/params.
+    // Keys of a deformation motion block: empty when still. motion[0] has the first time only (its values are shape and
+    // params above); the others have the same topology.
     struct MotionKey {
         float time = 0;
         Shape shape;

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reader: streams, archives and conditionals around one State.
+#include "ribtools/reader.h"
+
+#include "ribtools/archives.h"
+#include "ribtools/conditional.h"
+#include "ribtools/rib_parse.h"
+#include "ribtools/rib_source.h"
+#include "ribtools/search_path.h"
+#include "ribtools/spelling.h"
+#include "ribtools/state.h"
+
+#include <algorithm>
+#include <new>
+
+namespace rib {
+
+namespace {
+
+// Archives in archives. Each level costs a block of buffer and some machine stack.
+constexpr std::size_t max_archive_depth = 100;
+// Archives that read archives several times over multiply; this many end any such flood.
+constexpr std::uint64_t max_archive_reads = 4'000'000;
+
+} // namespace
+
+class Reader::Impl final : public StreamHost {
+public:
+    Impl(Backend& backend, base::Diag& diag, Config config)
+        : diag_(diag), config_(std::move(config)), state_(backend, diag, config_, *this) {}
+
+    ReadStatus read_path(const std::string& path) {
+        OpenResult opened = open_file(path);
+        if (!opened.source) {
+            diag_.report(base::Severity::Severe, base::Code::NoFile, {},
+                         "cannot read " + printable(path) + ": " + opened.error);
+            return ReadStatus::Environment;
+        }
+        return read_top(std::move(opened.source), path, path);
+    }
+
+    // A stream of its own: blocks opened in it end with it.
+    ReadStatus read_top(std::unique_ptr<ByteSource> source, std::string_view name,
+                        const std::string& path) {
+        try {
+            const std::size_t depth = state_.depth();
+            const base::SourcePos start{diag_.file_id(name), 1, 1};
+            const base::SourcePos end = read_stream(std::move(source), start, path);
+            if (!state_.stopped()) {
+                state_.close_blocks(end, depth);
+            }
+        } catch (const std::bad_alloc&) {
+            diag_.report(base::Severity::Severe, base::Code::NoMem, {}, "out of memory");
+            return ReadStatus::Environment;
+        }
+        return failed_           ? ReadStatus::Environment
+               : state_.stopped() ? ReadStatus::Stopped
+                                  : ReadStatus::Ok;
+    }
+
+    // --- StreamHost ---
+
+    void read_archive(const std::string& name, base::SourcePos pos) override {
+        if (streams_.size() > max_archive_depth || ++num_archive_reads_ > max_archive_reads) {
+            diag_.report_once("archive-limit", base::Severity::Error, base::Code::Limit, pos,
+                              "ReadArchive " + printable(name) +
+                                  ": too many archives in archives; skipped");
+            return;
+        }
+        if (const InlineArchive* archive = archives_.find(name)) {
+            read_inline(*archive, pos);
+        } else {
+            read_archive_file(name, pos);
+        }
+    }
+
+    void begin_archive(const std::string& name, base::SourcePos pos) override {
+        InlineArchive archive;
+        std::string text;
+        if (streams_.back().parser->record_archive(pos, text, archive.start)) {
+            archive.name = name;
+            archive.text = std::make_shared<const std::string>(std::move(text));
+            archives_.add(std::move(archive));
+        }
+    }
+
+    void conditional(const Request& request) override {
+        Conditions& conditions = streams_.back().conditions;
+        conditions.step(request, [&](const std::string& text) {
+            return evaluate_condition(text, state_.options(), state_.attributes(), diag_, request.pos);
+        }, diag_);
+    }
+
+    void forget_archives(std::size_t keep) override { archives_.keep(keep); }
+    std::size_t num_archives() const override { return archives_.size(); }
+
+private:
+    struct Stream {
+        Parser* parser;
+        std::string path; // "" for memory: where relative archive names start, and what may not read itself
+        Conditions conditions;
+    };
+
+    // Reads to the end; returns its place.
+    base::SourcePos read_stream(std::unique_ptr<ByteSource> source, base::SourcePos start,
+                                const std::string& path) {
+        Lexer lexer(std::move(source), start, &config_.on_comment);
+        Parser parser(lexer, diag_, state_.dictionary(), state_.colors());
+        streams_.push_back({&parser, path, {}});
+        Request request;
+        while (!state_.stopped() && parser.next(request)) {
+            const bool is_conditional = request.id == RequestId::IfBegin ||
+                                        request.id == RequestId::ElseIf ||
+                                        request.id == RequestId::Else || request.id == RequestId::IfEnd;
+            if (streams_.back().conditions.active() || is_conditional) {
+                state_.execute(request);
+            } else if (request.id == RequestId::ArchiveBegin) {
+                std::string text;
+                base::SourcePos ignored;
+                (void)parser.record_archive(request.pos, text, ignored);
+            }
+        }
+        if (!lexer.read_error().empty()) {
+            diag_.report(base::Severity::Severe, base::Code::System, lexer.token().pos,
+                         "reading failed: " + lexer.read_error());
+            failed_ = true;
+        }
+        streams_.back().conditions.finish(lexer.token().pos, diag_);
+        streams_.pop_back();
+        return lexer.token().pos;
+    }
+
+    bool is_open(const std::string& path) const {
+        return std::any_of(streams_.begin(), streams_.end(),
+                           [&](const Stream& s) { return s.path == path; });
+    }
+
+    void report_circular(const std::string& name, base::SourcePos pos) {
+        diag_.report(base::Severity::Error, base::Code::IllState, pos,
+                     "ReadArchive: " + printable(name) + " reads itself; skipped");
+    }
+
+    void read_inline(const InlineArchive& archive, base::SourcePos pos) {
+        const std::string mark = "archive " + archive.name;
+        if (is_open(mark)) {
+            report_circular(archive.name, pos);
+            return;
+        }
+        (void)read_stream(open_memory(archive.text), archive.start, mark);
+    }
+
+    void read_archive_file(const std::string& name, base::SourcePos pos) {
+        const std::vector<std::string> candidates = archive_candidates(name);
+        std::string why = "No such file or directory";
+        for (const std::string& path : candidates) {
+            OpenResult opened = open_file(path);
+            if (!opened.source) {
+                continue;
+            }
+            if (is_open(path)) {
+                report_circular(name, pos);
+                return;
+            }
+            (void)read_stream(std::move(opened.source), {diag_.file_id(path), 1, 1}, path);
+            return;
+        }
+        diag_.report(base::Severity::Error, base::Code::NoFile, pos,
+                     "ReadArchive: " + printable(name) + ": not found (looked in " +
+                         std::to_string(candidates.size()) + " places); skipped");
+    }
+
+    // The archive path, then the current directory, then beside the file that asks (ri.md 6.12).
+    std::vector<std::string> archive_candidates(const std::string& name) const {
+        std::vector<std::string> result;
+        const auto add = [&](std::string path) {
+            if (path.starts_with("./")) {
+                path.erase(0, 2);
+            }
+            if (std::find(result.begin(), result.end(), path) == result.end()) {
+                result.push_back(std::move(path));
+            }
+        };
+        if (!bypasses_search_path(name)) {
+            const auto& paths = state_.options().search_paths;
+            for (const char* key : {"archive", "resource"}) {
+                const auto it = paths.find(key);
+                for (const std::string& directory :
+                     it == paths.end() ? std::vector<std::string>() : it->second) {
+                    add(directory + "/" + name);
+                }
+            }
+        }
+        add(name);
+        for (auto it = streams_.rbegin(); it != streams_.rend() && !name.starts_with("/"); ++it) {
+            const std::size_t slash = it->path.rfind('/');
+            if (slash != std::string::npos && !it->path.starts_with("archive ")) {
+                add(it->path.substr(0, slash + 1) + name);
+            }
+        }
+        return result;
+    }
+
+    base::Diag& diag_;
+    Config config_;
+    Archives archives_;
+    std::vector<Stream> streams_;
+    std::uint64_t num_archive_reads_ = 0;
+    bool failed_ = false; // the environment refused something
+    State state_;
+};
+
+Reader::Reader(Backend& backend, base::Diag& diag, Config config)
+    : impl_(std::make_unique<Impl>(backend, diag, std::move(config))) {}
+
+Reader::~Reader() = default;
+
+ReadStatus Reader::read_file(const std::string& path) {
+    return path == "-" ? read_stdin() : impl_->read_path(path);
+}
+
+ReadStatus Reader::read_stdin() {
+    return impl_->read_top(open_stdin(), "stdin", "");
+}
+
+ReadStatus Reader::read_text(std::string_view text, std::string_view name) {
+    return impl_->read_top(open_memory(std::make_shared<const std::string>(text)), name, "");
+}
+
+} // namespace rib

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the bytes of a RIB stream come from: a file, standard input, memory. Read block by block, so that no stream is
+// ever held whole. Compressed streams will be one more source, chosen in open_file() by their first bytes.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+
+namespace rib {
+
+class ByteSource {
+public:
+    virtual ~ByteSource() = default;
+    // Up to size bytes; 0 at the end or after a read error.
+    virtual std::size_t read(char* buffer, std::size_t size) = 0;
+    // Empty unless a read failed.
+    [[nodiscard]] virtual const std::string& error() const = 0;
+};
+
+struct OpenResult {
+    std::unique_ptr<ByteSource> source; // null: not opened
+    std::string error;                  // why
+};
+
+// Directories and unreadable files are errors.
+[[nodiscard]] OpenResult open_file(const std::string& path);
+[[nodiscard]] std::unique_ptr<ByteSource> open_stdin();
+// Keeps the text.
+[[nodiscard]] std::unique_ptr<ByteSource> open_memory(std::shared_ptr<const std::string> text);
+
+} // namespace rib

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Inline archives (ArchiveBegin, ri.md 6.12): recorded text with the place it came from, found by name.
+// Inline archives (ArchiveBegin, ri.md 6.12): recorded text with the place it came from, found by
+// name.
 #pragma once
 
 #include "runtime/base/diag.h"

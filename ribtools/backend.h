@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the graphics state hands finished work to. A renderer registers one; tests register their own.
+// What the graphics state hands finished work to. A renderer registers one; tests register their
+// own.
 #pragma once
 
 #include "ribtools/scene.h"
@@ -8,8 +9,8 @@
 
 namespace rib {
 
-struct TextureRequest { // MakeTexture and its relatives
-    std::string kind;   // request name
+struct TextureRequest {             // MakeTexture and its relatives
+    std::string kind;               // request name
     std::vector<std::string> files; // sources, then the destination
     std::vector<std::string> strings;
     std::vector<float> floats;

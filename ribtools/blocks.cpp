@@ -24,7 +24,8 @@ void Blocks::pop() {
     stack_.pop_back();
 }
 
-// The nearest block that is not one of those that only save state. They can only lie inside one of these four.
+// The nearest block that is not one of those that only save state. They can only lie inside one of
+// these four.
 BlockKind Blocks::enclosing() const {
     const auto is_open = [&](BlockKind kind) {
         return open_count_[static_cast<std::size_t>(kind)] > 0;
@@ -52,13 +53,18 @@ std::string Blocks::where() const {
 base::Code illegal_code(RequestKind kind) {
     switch (kind) {
     case RequestKind::Option:
-    case RequestKind::Texture: return base::Code::NotOptions;
+    case RequestKind::Texture:
+        return base::Code::NotOptions;
     case RequestKind::Attribute:
-    case RequestKind::Transform: return base::Code::NotAttribs;
-    case RequestKind::Primitive: return base::Code::NotPrims;
-    case RequestKind::Block: return base::Code::Nesting;
+    case RequestKind::Transform:
+        return base::Code::NotAttribs;
+    case RequestKind::Primitive:
+        return base::Code::NotPrims;
+    case RequestKind::Block:
+        return base::Code::Nesting;
     case RequestKind::Other:
-    case RequestKind::Skipped: return base::Code::IllState;
+    case RequestKind::Skipped:
+        return base::Code::IllState;
     }
     return base::Code::IllState;
 }

@@ -31,8 +31,8 @@ public:
     void push(BlockKind kind, base::SourcePos pos);
     void pop();
 
-    // Legal here? Attribute, Transform, Solid and Resource blocks pass on what encloses them: a row must allow both
-    // the innermost block and the nearest one of another kind.
+    // Legal here? Attribute, Transform, Solid and Resource blocks pass on what encloses them: a row
+    // must allow both the innermost block and the nearest one of another kind.
     [[nodiscard]] bool is_legal(const RequestRow& row) const;
     // "inside World", "outside every block": for messages.
     [[nodiscard]] std::string where() const;

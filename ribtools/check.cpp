@@ -19,7 +19,8 @@ struct Judge {
     base::SourcePos pos;
 
     bool reject(base::Code code, const std::string& text) const {
-        diag.report(base::Severity::Error, code, pos, std::string(name) + ": " + text + "; skipped");
+        diag.report(base::Severity::Error, code, pos,
+                    std::string(name) + ": " + text + "; skipped");
         return false;
     }
     void warn(base::Code code, base::SourcePos at, const std::string& text) const {
@@ -117,7 +118,8 @@ bool judge(Quadric& q, const Judge& to, const Basis&) {
                empty(std::min(a[1], a[2]) >= r || std::max(a[1], a[2]) <= -r,
                      "zmin and zmax leave nothing of the sphere");
     }
-    case QuadricKind::Cone: return empty(a[1] == 0 || a[2] == 0, "radius or sweep is zero");
+    case QuadricKind::Cone:
+        return empty(a[1] == 0 || a[2] == 0, "radius or sweep is zero");
     case QuadricKind::Cylinder:
         return empty(a[0] == 0 || a[1] == a[2] || a[3] == 0, "radius, height or sweep is zero");
     case QuadricKind::Hyperboloid:
@@ -126,7 +128,8 @@ bool judge(Quadric& q, const Judge& to, const Basis&) {
     case QuadricKind::Paraboloid:
         return empty(a[0] == 0 || a[1] == a[2] || a[3] == 0, "radius, height or sweep is zero") &&
                empty(a[2] == 0 || a[1] / a[2] < 0, "zmin and zmax must lie on one side of the tip");
-    case QuadricKind::Disk: return empty(a[1] == 0 || a[2] == 0, "radius or sweep is zero");
+    case QuadricKind::Disk:
+        return empty(a[1] == 0 || a[2] == 0, "radius or sweep is zero");
     case QuadricKind::Torus:
         return empty(a[1] == 0 || a[2] == a[3] || a[4] == 0, "minor radius or sweep is zero");
     }
@@ -165,8 +168,9 @@ bool judge(Polygons& p, const Judge& to, const Basis&) {
 bool judge(Patches& p, const Judge& to, const Basis& basis) {
     if (p.nu < 2 || p.nv < 2 || patches_along(p, true, basis) == 0 ||
         patches_along(p, false, basis) == 0) {
-        return to.reject(base::Code::Range, "too few control points for one patch: " +
-                                                std::to_string(p.nu) + " by " + std::to_string(p.nv));
+        return to.reject(base::Code::Range,
+                         "too few control points for one patch: " + std::to_string(p.nu) + " by " +
+                             std::to_string(p.nv));
     }
     if (!p.bicubic || !p.is_mesh) {
         return true;
@@ -175,8 +179,9 @@ bool judge(Patches& p, const Judge& to, const Basis& basis) {
         return (periodic ? n : n - 4) % step != 0;
     };
     if (left_over(p.nu, basis.ustep, p.uperiodic) || left_over(p.nv, basis.vstep, p.vperiodic)) {
-        to.warn(base::Code::Consistency, to.pos,
-                "the number of control points does not fit the basis steps; the last ones are unused");
+        to.warn(
+            base::Code::Consistency, to.pos,
+            "the number of control points does not fit the basis steps; the last ones are unused");
     }
     return true;
 }
@@ -244,7 +249,8 @@ bool judge(SubdivisionMesh& m, const Judge& to, const Basis&) {
     tags_fit = tags_fit && sums[0] <= m.int_args.size() && sums[1] <= m.float_args.size() &&
                sums[2] <= m.string_args.size();
     if (!tags_fit) {
-        to.warn(base::Code::Consistency, to.pos, "tag arguments do not match their counts; tags dropped");
+        to.warn(base::Code::Consistency, to.pos,
+                "tag arguments do not match their counts; tags dropped");
         m.tags.clear();
         m.num_args.clear();
     }
@@ -299,7 +305,7 @@ bool judge(Blobby& b, const Judge& to, const Basis&) {
         if (op >= 1000) {
             ++leaves;
             const std::size_t floats = op == 1000 ? 1 : op == 1001 ? 16 : op == 1002 ? 23 : 4;
-            good = op == 1003   ? has(arg[0], 1, b.strings.size()) && has(arg[1], 4, b.floats.size())
+            good = op == 1003 ? has(arg[0], 1, b.strings.size()) && has(arg[1], 4, b.floats.size())
                    : op == 1004 ? has(arg[0], 1, b.strings.size())
                                 : has(arg[0], floats, b.floats.size());
         } else {
@@ -315,8 +321,9 @@ bool judge(Blobby& b, const Judge& to, const Basis&) {
         return to.reject(base::Code::Range, "no instructions");
     }
     if (leaves != b.num_leaves) {
-        to.warn(base::Code::Consistency, to.pos, "the code has " + std::to_string(leaves) +
-                                                     " leaves, not " + std::to_string(b.num_leaves));
+        to.warn(base::Code::Consistency, to.pos,
+                "the code has " + std::to_string(leaves) + " leaves, not " +
+                    std::to_string(b.num_leaves));
         b.num_leaves = leaves;
     }
     return true;
@@ -347,7 +354,8 @@ bool has_free_counts(const Shape& shape) {
 
 // Vertices nobody refers to are common in shared meshes and no mistake.
 bool may_have_unused_vertices(const Shape& shape) {
-    return std::holds_alternative<Polygons>(shape) || std::holds_alternative<SubdivisionMesh>(shape);
+    return std::holds_alternative<Polygons>(shape) ||
+           std::holds_alternative<SubdivisionMesh>(shape);
 }
 
 void keep_items(Param& p, std::size_t items) {
@@ -371,12 +379,11 @@ Verdict judge_param(Param& p, const ClassCounts& counts, bool unused_vertices, c
     const std::size_t wanted = counts.of(p.decl.storage);
     const std::size_t have = p.num_items();
     const bool position = is_position(p);
-    const std::string what = "parameter '" + printable(p.name) + "' (" +
-                             declaration_text(p.decl) + "): " + num(have) + " values where " +
-                             num(wanted) + " are expected";
+    const std::string what = "parameter '" + printable(p.name) + "' (" + declaration_text(p.decl) +
+                             "): " + num(have) + " values where " + num(wanted) + " are expected";
     if (position && !good_position_type(p)) {
-        to.reject(base::Code::BadToken, "\"" + p.name + "\" has the wrong type (" +
-                                            declaration_text(p.decl) + ")");
+        to.reject(base::Code::BadToken,
+                  "\"" + p.name + "\" has the wrong type (" + declaration_text(p.decl) + ")");
         return Verdict::Reject;
     }
     if (have < wanted) {
@@ -395,7 +402,8 @@ Verdict judge_param(Param& p, const ClassCounts& counts, bool unused_vertices, c
 
 bool judge_params(Primitive& primitive, const Basis& basis, const Judge& to) {
     std::vector<Param>& params = primitive.params.params;
-    if (needs_position(primitive.shape) && std::none_of(params.begin(), params.end(), is_position)) {
+    if (needs_position(primitive.shape) &&
+        std::none_of(params.begin(), params.end(), is_position)) {
         return to.reject(base::Code::MissingData, "no \"P\"");
     }
     if (has_free_counts(primitive.shape)) {
@@ -416,12 +424,17 @@ bool judge_params(Primitive& primitive, const Basis& basis, const Judge& to) {
 
 std::size_t ClassCounts::of(StorageClass storage) const {
     switch (storage) {
-    case StorageClass::Constant: return 1;
-    case StorageClass::Uniform: return uniform;
-    case StorageClass::Varying: return varying;
-    case StorageClass::Vertex: return vertex;
+    case StorageClass::Constant:
+        return 1;
+    case StorageClass::Uniform:
+        return uniform;
+    case StorageClass::Varying:
+        return varying;
+    case StorageClass::Vertex:
+        return vertex;
     case StorageClass::FaceVarying:
-    case StorageClass::FaceVertex: return face_varying;
+    case StorageClass::FaceVertex:
+        return face_varying;
     }
     return 1;
 }
@@ -480,12 +493,14 @@ std::string trim_curve_fault(const TrimCurve& t) {
         if (t.order[i] < 1 || t.order[i] > t.n[i]) {
             return "an order does not fit its number of points";
         }
-        const std::size_t count = static_cast<std::size_t>(t.order[i]) + static_cast<std::size_t>(t.n[i]);
+        const std::size_t count =
+            static_cast<std::size_t>(t.order[i]) + static_cast<std::size_t>(t.n[i]);
         if (knots + count > t.knot.size()) {
             return "too few knots";
         }
         const auto begin = t.knot.begin() + static_cast<std::ptrdiff_t>(knots);
-        if (!std::is_sorted(begin, begin + static_cast<std::ptrdiff_t>(count)) || !(t.min[i] <= t.max[i])) {
+        if (!std::is_sorted(begin, begin + static_cast<std::ptrdiff_t>(count)) ||
+            !(t.min[i] <= t.max[i])) {
             return "knots or the range of a curve decrease";
         }
         knots += count;
@@ -496,7 +511,8 @@ std::string trim_curve_fault(const TrimCurve& t) {
 namespace {
 
 bool same_shape_topology(const Polygons& a, const Polygons& b) {
-    return a.num_loops == b.num_loops && a.num_vertices == b.num_vertices && a.vertices == b.vertices;
+    return a.num_loops == b.num_loops && a.num_vertices == b.num_vertices &&
+           a.vertices == b.vertices;
 }
 bool same_shape_topology(const Patches& a, const Patches& b) {
     return a.bicubic == b.bicubic && a.is_mesh == b.is_mesh && a.nu == b.nu && a.nv == b.nv &&

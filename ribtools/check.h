@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counts, ranges and index bounds of primitives (ri.md 10.3 and section 11). What passes may be indexed without further
-// checks; what does not is reported and rejected, or loses the parameter at fault.
+// Counts, ranges and index bounds of primitives (ri.md 10.3 and section 11). What passes may be
+// indexed without further checks; what does not is reported and rejected, or loses the parameter at
+// fault.
 #pragma once
 
 #include "ribtools/scene.h"
@@ -19,11 +20,12 @@ struct ClassCounts {
     [[nodiscard]] std::size_t of(StorageClass storage) const;
 };
 
-// Of a shape that passed check_primitive. The basis steps count for bicubic patch meshes (both) and curves (v).
+// Of a shape that passed check_primitive. The basis steps count for bicubic patch meshes (both) and
+// curves (v).
 [[nodiscard]] ClassCounts class_counts(const Shape& shape, const Basis& basis);
 
-// False: reported, not to be drawn. name: the request, for messages. Surplus values and faulty parameters are removed
-// from the list with a message.
+// False: reported, not to be drawn. name: the request, for messages. Surplus values and faulty
+// parameters are removed from the list with a message.
 [[nodiscard]] bool check_primitive(Primitive& primitive, const Basis& basis, std::string_view name,
                                    base::Diag& diag);
 

@@ -22,8 +22,9 @@ struct Value {
     bool is_text = false;
 
     [[nodiscard]] bool truth() const {
-        return is_text ? !text.empty()
-                       : std::any_of(numbers.begin(), numbers.end(), [](double x) { return x != 0; });
+        return is_text
+                   ? !text.empty()
+                   : std::any_of(numbers.begin(), numbers.end(), [](double x) { return x != 0; });
     }
     [[nodiscard]] double number() const { return numbers.empty() ? 0 : numbers.front(); }
 };
@@ -153,7 +154,8 @@ private:
         return v;
     }
 
-    // atom := number | 'chars' | variable | 'defined(' name ')' | 'concat(' expr ',' expr ')' | '(' expr ')'
+    // atom := number | 'chars' | variable | 'defined(' name ')' | 'concat(' expr ',' expr ')' | '('
+    // expr ')'
     Value atom() {
         if (++depth_ > max_expression_depth) {
             fail("nested too deeply");
@@ -243,7 +245,8 @@ private:
         return std::string(text_.substr(begin, at_ - begin));
     }
 
-    // [ 'Attribute:' | 'Option:' ] group ':' item | item, attributes before options, a bare item in "user" first.
+    // [ 'Attribute:' | 'Option:' ] group ':' item | item, attributes before options, a bare item in
+    // "user" first.
     [[nodiscard]] std::optional<Value> lookup(std::string wanted) const {
         bool attributes = true, options = true;
         if (wanted.starts_with("Attribute:")) {
@@ -290,7 +293,8 @@ private:
 
     bool matches(const std::string& text, const std::string& pattern) {
         regex_t compiled;
-        if (pattern.size() > 1000 || ::regcomp(&compiled, pattern.c_str(), REG_EXTENDED | REG_NOSUB) != 0) {
+        if (pattern.size() > 1000 ||
+            ::regcomp(&compiled, pattern.c_str(), REG_EXTENDED | REG_NOSUB) != 0) {
             fail("'" + printable(pattern) + "' is no pattern");
             return false;
         }
@@ -300,7 +304,8 @@ private:
     }
 
     void skip_blanks() {
-        while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t' || text_[at_] == '\n')) {
+        while (at_ < text_.size() &&
+               (text_[at_] == ' ' || text_[at_] == '\t' || text_[at_] == '\n')) {
             ++at_;
         }
     }
@@ -354,8 +359,7 @@ void Conditions::step(const Request& request,
         levels_.pop_back();
     } else {
         const bool may_take = level.parent_active && !level.taken;
-        level.active =
-            may_take && (request.id == RequestId::Else || evaluate(request.string(0)));
+        level.active = may_take && (request.id == RequestId::Else || evaluate(request.string(0)));
         level.taken |= level.active;
     }
 }

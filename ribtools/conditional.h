@@ -33,7 +33,8 @@ private:
     std::vector<Level> levels_;
 };
 
-// Value of an expression; false, reported, where it is malformed. Undefined variables are empty, with a warning.
+// Value of an expression; false, reported, where it is malformed. Undefined variables are empty,
+// with a warning.
 [[nodiscard]] bool evaluate_condition(std::string_view text, const Options& options,
                                       const Attributes& attributes, base::Diag& diag,
                                       base::SourcePos pos);

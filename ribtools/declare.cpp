@@ -19,10 +19,12 @@ constexpr std::pair<std::string_view, StorageClass> storage_names[] = {
     {"facevarying", StorageClass::FaceVarying}, {"facevertex", StorageClass::FaceVertex}};
 
 constexpr std::pair<std::string_view, ParamType> type_names[] = {
-    {"float", ParamType::Float},   {"integer", ParamType::Integer}, {"int", ParamType::Integer},
-    {"string", ParamType::String}, {"color", ParamType::Color},     {"point", ParamType::Point},
-    {"vector", ParamType::Vector}, {"normal", ParamType::Normal},   {"hpoint", ParamType::HPoint},
-    {"matrix", ParamType::Matrix}, {"mpoint", ParamType::MPoint},   {"pointer", ParamType::Pointer}};
+    {"float", ParamType::Float},   {"integer", ParamType::Integer},
+    {"int", ParamType::Integer},   {"string", ParamType::String},
+    {"color", ParamType::Color},   {"point", ParamType::Point},
+    {"vector", ParamType::Vector}, {"normal", ParamType::Normal},
+    {"hpoint", ParamType::HPoint}, {"matrix", ParamType::Matrix},
+    {"mpoint", ParamType::MPoint}, {"pointer", ParamType::Pointer}};
 
 // More elements per item than any use has; keeps products of counts small.
 constexpr int max_array_length = 1 << 20;
@@ -168,9 +170,8 @@ std::string declaration_text(const ParamDecl& decl) {
         }
     }
     text += ' ';
-    const auto* type =
-        std::find_if(std::begin(type_names), std::end(type_names),
-                     [&](const auto& entry) { return entry.second == decl.type; });
+    const auto* type = std::find_if(std::begin(type_names), std::end(type_names),
+                                    [&](const auto& entry) { return entry.second == decl.type; });
     text += decl.type == ParamType::Integer ? "int" : type->first;
     if (decl.is_array) {
         text += "[" + std::to_string(decl.array_length) + "]";

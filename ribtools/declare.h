@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Declarations of parameter names (ri.md 10.1): their grammar, the dictionary that Declare fills, and the types of
-// implementation-specific options and attributes from ri_options.def.
+// Declarations of parameter names (ri.md 10.1): their grammar, the dictionary that Declare fills,
+// and the types of implementation-specific options and attributes from ri_options.def.
 #pragma once
 
 #include "ribtools/param.h"
@@ -14,9 +14,9 @@ namespace rib {
 
 struct Declaration {
     ParamDecl decl;
-    std::string name;  // inline declarations only
+    std::string name;          // inline declarations only
     bool is_reference = false; // RIS: the value is a string whatever the type says
-    std::string error; // not empty: malformed, what is wrong
+    std::string error;         // not empty: malformed, what is wrong
 };
 
 // "[class] type [n]", the second argument of Declare.
@@ -45,7 +45,9 @@ public:
 private:
     struct Hash {
         using is_transparent = void;
-        std::size_t operator()(std::string_view s) const { return std::hash<std::string_view>{}(s); }
+        std::size_t operator()(std::string_view s) const {
+            return std::hash<std::string_view>{}(s);
+        }
     };
     std::unordered_map<std::string, Entry, Hash, std::equal_to<>> entries_;
 };

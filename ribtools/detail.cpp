@@ -77,14 +77,12 @@ std::vector<V3d> visible_points(const base::Mat4& cam_from_box, const std::array
 float raster_area(const Options& o, const base::Mat4& cam_from_box,
                   const std::array<double, 6>& bound) {
     const bool perspective = o.projection == "perspective";
-    const double tan_half =
-        std::tan(static_cast<double>(o.fov_deg) * std::numbers::pi / 360);
+    const double tan_half = std::tan(static_cast<double>(o.fov_deg) * std::numbers::pi / 360);
     const auto [l, r, b, t] = o.screen_window;
     const double scale_x = o.xres / static_cast<double>(r - l);
     const double scale_y = o.yres / static_cast<double>(t - b);
     std::vector<Point2> raster;
-    for (const V3d& P :
-         visible_points(cam_from_box, bound, static_cast<double>(o.near_clip))) {
+    for (const V3d& P : visible_points(cam_from_box, bound, static_cast<double>(o.near_clip))) {
         const double w = perspective ? P.z * tan_half : 1;
         raster.push_back({P.x / w * scale_x, P.y / w * scale_y});
     }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Decimal text to numbers, correctly rounded, at memory speed: most of a RIB file is numbers.
 //
-// In: a pointer into a buffer that is followed by a byte that cannot continue a number (the lexer's sentinel).
-// Out: the value and the first byte behind it. Source of the fast path: Clinger, "How to Read Floating Point Numbers
-// Accurately" (PLDI 1990): an integer below 2^53 times or over an exact power of ten rounds once.
+// In: a pointer into a buffer that is followed by a byte that cannot continue a number (the lexer's
+// sentinel). Out: the value and the first byte behind it. Source of the fast path: Clinger, "How to
+// Read Floating Point Numbers Accurately" (PLDI 1990): an integer below 2^53 times or over an exact
+// power of ten rounds once.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +22,8 @@ struct Decimal {
     bool truncated = false;  // more digits than the mantissa holds
 };
 
-// ri.md 2.2: [+-] (digits [. digits*] | . digits) [(e|E) [+-] digits]. The caller checks that a delimiter follows.
+// ri.md 2.2: [+-] (digits [. digits*] | . digits) [(e|E) [+-] digits]. The caller checks that a
+// delimiter follows.
 [[nodiscard]] Decimal scan_decimal(const char* p);
 
 // Nearest value, ties to even. Beyond the largest finite number: that number with its sign.

@@ -9,14 +9,18 @@ int components(ParamType type) {
     case ParamType::Float:
     case ParamType::Integer:
     case ParamType::String:
-    case ParamType::Pointer: return 1;
+    case ParamType::Pointer:
+        return 1;
     case ParamType::Color:
     case ParamType::Point:
     case ParamType::Vector:
-    case ParamType::Normal: return 3;
-    case ParamType::HPoint: return 4;
+    case ParamType::Normal:
+        return 3;
+    case ParamType::HPoint:
+        return 4;
     case ParamType::Matrix:
-    case ParamType::MPoint: return 16;
+    case ParamType::MPoint:
+        return 16;
     }
     return 1;
 }

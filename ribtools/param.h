@@ -11,9 +11,26 @@
 
 namespace rib {
 
-enum class StorageClass : std::uint8_t { Constant, Uniform, Varying, Vertex, FaceVarying, FaceVertex };
+enum class StorageClass : std::uint8_t {
+    Constant,
+    Uniform,
+    Varying,
+    Vertex,
+    FaceVarying,
+    FaceVertex
+};
 enum class ParamType : std::uint8_t {
-    Float, Integer, String, Color, Point, Vector, Normal, HPoint, Matrix, MPoint, Pointer
+    Float,
+    Integer,
+    String,
+    Color,
+    Point,
+    Vector,
+    Normal,
+    HPoint,
+    Matrix,
+    MPoint,
+    Pointer
 };
 
 // Floats per element (ints and strings per element: 1). Colors always have 3 here: ColorSamples is
@@ -32,12 +49,13 @@ struct ParamDecl {
 struct Param {
     std::string name; // without inline declaration
     ParamDecl decl;
-    // The name was declared nowhere: decl is guessed from the value (numbers: float, strings: string). A shader
-    // call's parameter takes its type from the shader; BADTOKEN only if the shader lacks it.
+    // The name was declared nowhere: decl is guessed from the value (numbers: float, strings:
+    // string). A shader call's parameter takes its type from the shader; BADTOKEN only if the
+    // shader lacks it.
     bool guessed = false;
-    std::vector<float> floats;         // float, color, point, vector, normal, hpoint, matrix, mpoint
-    std::vector<std::int32_t> ints;    // integer
-    std::vector<std::string> strings;  // string
+    std::vector<float> floats;        // float, color, point, vector, normal, hpoint, matrix, mpoint
+    std::vector<std::int32_t> ints;   // integer
+    std::vector<std::string> strings; // string
     base::SourcePos pos;
 
     // Elements of decl.type[array_length] that the value holds.

@@ -53,7 +53,7 @@ public:
             diag_.report(base::Severity::Severe, base::Code::NoMem, {}, "out of memory");
             return ReadStatus::Environment;
         }
-        return failed_           ? ReadStatus::Environment
+        return failed_            ? ReadStatus::Environment
                : state_.stopped() ? ReadStatus::Stopped
                                   : ReadStatus::Ok;
     }
@@ -86,9 +86,13 @@ public:
 
     void conditional(const Request& request) override {
         Conditions& conditions = streams_.back().conditions;
-        conditions.step(request, [&](const std::string& text) {
-            return evaluate_condition(text, state_.options(), state_.attributes(), diag_, request.pos);
-        }, diag_);
+        conditions.step(
+            request,
+            [&](const std::string& text) {
+                return evaluate_condition(text, state_.options(), state_.attributes(), diag_,
+                                          request.pos);
+            },
+            diag_);
     }
 
     void forget_archives(std::size_t keep) override { archives_.keep(keep); }
@@ -97,7 +101,8 @@ public:
 private:
     struct Stream {
         Parser* parser;
-        std::string path; // "" for memory: where relative archive names start, and what may not read itself
+        std::string
+            path; // "" for memory: where relative archive names start, and what may not read itself
         Conditions conditions;
     };
 
@@ -109,9 +114,9 @@ private:
         streams_.push_back({&parser, path, {}});
         Request request;
         while (!state_.stopped() && parser.next(request)) {
-            const bool is_conditional = request.id == RequestId::IfBegin ||
-                                        request.id == RequestId::ElseIf ||
-                                        request.id == RequestId::Else || request.id == RequestId::IfEnd;
+            const bool is_conditional =
+                request.id == RequestId::IfBegin || request.id == RequestId::ElseIf ||
+                request.id == RequestId::Else || request.id == RequestId::IfEnd;
             if (streams_.back().conditions.active() || is_conditional) {
                 state_.execute(request);
             } else if (request.id == RequestId::ArchiveBegin) {

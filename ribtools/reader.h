@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The entry to ribtools: RIB text enters, finished scenes leave through Backend::render.
 //
-// One Reader is one rendering context (ri.md 1.2): options, declarations, lights and archives persist from one
-// read_* call to the next. Mistakes in the input are reported to Diag with their place and reading goes on; only what
-// the environment refuses (a file that cannot be opened, no memory) ends a read early, see ReadStatus.
+// One Reader is one rendering context (ri.md 1.2): options, declarations, lights and archives
+// persist from one read_* call to the next. Mistakes in the input are reported to Diag with their
+// place and reading goes on; only what the environment refuses (a file that cannot be opened, no
+// memory) ends a read early, see ReadStatus.
 #pragma once
 
 #include "ribtools/backend.h"
@@ -26,18 +27,22 @@ enum class ReadStatus : std::uint8_t {
 };
 
 struct Config {
-    // Built-in search paths: what "@" stands for, and the first value of each path. Keys: "shader", "texture",
-    // "archive", "procedural", "display". Not there: the current directory.
+    // Built-in search paths: what "@" stands for, and the first value of each path. Keys: "shader",
+    // "texture", "archive", "procedural", "display". Not there: the current directory.
     std::map<std::string, std::vector<std::string>> default_paths;
-    // RunProgram, DynamicLoad and System may start programs. Nothing here does yet; without consent it is said why.
+    // RunProgram, DynamicLoad and System may start programs. Nothing here does yet; without consent
+    // it is said why.
     bool allow_programs = false;
     // Options before the first request: switches that the RIB overrides (-res, -samples).
     Options defaults;
-    // Called at WorldBegin on the options of that world: switches that override the RIB (-crop, -o). May be empty.
+    // Called at WorldBegin on the options of that world: switches that override the RIB (-crop,
+    // -o). May be empty.
     std::function<void(Options&)> override_options;
-    // Says whether a world is wanted (-frames); its primitives are neither kept nor rendered if not. May be empty.
+    // Says whether a world is wanted (-frames); its primitives are neither kept nor rendered if
+    // not. May be empty.
     std::function<bool(const Options&)> wants_world;
-    // Receives comments: kind "structure" (##) or "comment" (#), text without the marks. May be empty.
+    // Receives comments: kind "structure" (##) or "comment" (#), text without the marks. May be
+    // empty.
     std::function<void(std::string_view kind, std::string_view text)> on_comment;
 };
 
@@ -48,8 +53,8 @@ public:
     Reader(const Reader&) = delete;
     Reader& operator=(const Reader&) = delete;
 
-    // "-" is standard input. Blocks still open at the end of the file are closed with a message; an unfinished
-    // world is not rendered (ri.md 16.20).
+    // "-" is standard input. Blocks still open at the end of the file are closed with a message; an
+    // unfinished world is not rendered (ri.md 16.20).
     ReadStatus read_file(const std::string& path);
     ReadStatus read_stdin();
     // RIB from memory: -option, .rendribrc, tests. `name` stands in messages.

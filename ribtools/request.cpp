@@ -41,17 +41,20 @@ constexpr RequestRow table[] = {
 };
 
 constexpr std::size_t num_letters(std::string_view args) {
-    return static_cast<std::size_t>(
-        std::count_if(args.begin(), args.end(), [](char c) { return c != '?' && c != '(' && c != ')'; }));
+    return static_cast<std::size_t>(std::count_if(
+        args.begin(), args.end(), [](char c) { return c != '?' && c != '(' && c != ')'; }));
 }
 
 constexpr std::size_t num_words(std::string_view names) {
-    return names.empty() ? 0 : 1 + static_cast<std::size_t>(std::count(names.begin(), names.end(), ' '));
+    return names.empty()
+               ? 0
+               : 1 + static_cast<std::size_t>(std::count(names.begin(), names.end(), ' '));
 }
 
 // Every argument has a name, and Request has room for all.
 static_assert(std::all_of(std::begin(table), std::end(table), [](const RequestRow& r) {
-    return num_letters(r.args) == num_words(r.arg_names) && num_letters(r.args) <= Request::max_args;
+    return num_letters(r.args) == num_words(r.arg_names) &&
+           num_letters(r.args) <= Request::max_args;
 }));
 
 using NameMap = std::unordered_map<std::string_view, RequestId>;
@@ -91,15 +94,24 @@ std::string_view similar_request(std::string_view name) {
 
 std::string_view block_name(BlockKind kind) {
     switch (kind) {
-    case BlockKind::None: return "outermost level";
-    case BlockKind::Frame: return "Frame";
-    case BlockKind::World: return "World";
-    case BlockKind::Attribute: return "Attribute";
-    case BlockKind::Transform: return "Transform";
-    case BlockKind::Solid: return "Solid";
-    case BlockKind::Object: return "Object";
-    case BlockKind::Motion: return "Motion";
-    case BlockKind::Resource: return "Resource";
+    case BlockKind::None:
+        return "outermost level";
+    case BlockKind::Frame:
+        return "Frame";
+    case BlockKind::World:
+        return "World";
+    case BlockKind::Attribute:
+        return "Attribute";
+    case BlockKind::Transform:
+        return "Transform";
+    case BlockKind::Solid:
+        return "Solid";
+    case BlockKind::Object:
+        return "Object";
+    case BlockKind::Motion:
+        return "Motion";
+    case BlockKind::Resource:
+        return "Resource";
     }
     return "";
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One request as read: its row of ri_requests.def, its positional arguments, its parameter list, its place.
-// Made by the parser (or later the C binding), consumed by the graphics state.
+// One request as read: its row of ri_requests.def, its positional arguments, its parameter list,
+// its place. Made by the parser (or later the C binding), consumed by the graphics state.
 #pragma once
 
 #include "ribtools/param.h"
@@ -34,15 +34,24 @@ enum class BlockKind : std::uint8_t {
 };
 enum class BlockEffect : std::uint8_t { None, Open, Close };
 enum class RequestKind : std::uint8_t {
-    Option, Attribute, Transform, Primitive, Block, Texture, Other, Skipped
+    Option,
+    Attribute,
+    Transform,
+    Primitive,
+    Block,
+    Texture,
+    Other,
+    Skipped
 };
 enum class ParamUse : std::uint8_t { None, Primvars, Shader, Option, Attribute, Free };
 enum class MotionAbility : std::uint8_t { Still, Moves };
 
-// Sets of block kinds (bit = BlockKind). Attribute, Transform, Solid and Resource blocks keep the legality of what
-// encloses them: see Blocks::is_legal.
+// Sets of block kinds (bit = BlockKind). Attribute, Transform, Solid and Resource blocks keep the
+// legality of what encloses them: see Blocks::is_legal.
 namespace scopes {
-constexpr unsigned bit(BlockKind kind) { return 1u << static_cast<unsigned>(kind); }
+constexpr unsigned bit(BlockKind kind) {
+    return 1u << static_cast<unsigned>(kind);
+}
 constexpr unsigned Outermost = bit(BlockKind::None);
 constexpr unsigned BeforeWorld = Outermost | bit(BlockKind::Frame);
 constexpr unsigned Nested = bit(BlockKind::Attribute) | bit(BlockKind::Transform) |

@@ -53,8 +53,8 @@ Lexer::Lexer(std::unique_ptr<ByteSource> source, base::SourcePos start,
       p_(buffer_.data() + 1), end_(p_), file_id_(start.file_id), line_(start.line),
       line_start_(1 - static_cast<std::int64_t>(start.col)) {}
 
-// Moves what is still needed, from keep on, to the front of the buffer and reads more behind it. False at the end of
-// the source or when a token fills the whole buffer.
+// Moves what is still needed, from keep on, to the front of the buffer and reads more behind it.
+// False at the end of the source or when a token fills the whole buffer.
 bool Lexer::refill(const char*& keep) {
     if (at_end_) {
         return false;
@@ -158,8 +158,11 @@ void Lexer::lex(Token& t) {
         ++p_;
         t.kind = TokenKind::ArrayEnd;
         return;
-    case '"': lex_string(t); return;
-    default: break;
+    case '"':
+        lex_string(t);
+        return;
+    default:
+        break;
     }
     if (class_of(*p_) == High) {
         lex_binary(t);
@@ -287,8 +290,8 @@ bool Lexer::array_holds_strings() {
     return skip_white() && *p_ == '"';
 }
 
-// The tight loop: numbers, blanks and line ends straight from the block. Everything else, and what a block boundary
-// may cut, goes through lex().
+// The tight loop: numbers, blanks and line ends straight from the block. Everything else, and what
+// a block boundary may cut, goes through lex().
 template <class Store> bool Lexer::read_numbers(Store store) {
     for (;;) {
         while (p_ < end_) {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // RIB bytes to tokens (ri.md, section 2). Reads block-wise; holds one token and one block.
 //
-// Numbers inside brackets, the bulk of every large file, are not made tokens: read_floats() and its relatives go from
-// bytes to vectors. Binary tokens (section 3) will enter in lex_binary(); until then a byte >= 0200 is a Bad token.
+// Numbers inside brackets, the bulk of every large file, are not made tokens: read_floats() and its
+// relatives go from bytes to vectors. Binary tokens (section 3) will enter in lex_binary(); until
+// then a byte >= 0200 is a Bad token.
 #pragma once
 
 #include "ribtools/number.h"
@@ -26,7 +27,7 @@ struct Token {
     bool is_integer = false; // Number: written without point and exponent
     base::SourcePos pos;
     double number = 0;
-    std::string text;   // Name, String (escapes resolved); Bad: as written
+    std::string text;             // Name, String (escapes resolved); Bad: as written
     const char* reason = nullptr; // Bad: what is wrong with it
 };
 
@@ -34,8 +35,10 @@ class Lexer {
 public:
     using CommentHandler = std::function<void(std::string_view kind, std::string_view text)>;
 
-    // start: the place of the first byte, file id included. on_comment may be null; it must outlive the lexer.
-    Lexer(std::unique_ptr<ByteSource> source, base::SourcePos start, const CommentHandler* on_comment);
+    // start: the place of the first byte, file id included. on_comment may be null; it must outlive
+    // the lexer.
+    Lexer(std::unique_ptr<ByteSource> source, base::SourcePos start,
+          const CommentHandler* on_comment);
 
     // The current token; the first after construction is read by advance().
     [[nodiscard]] const Token& token() const { return token_; }
@@ -44,23 +47,24 @@ public:
     // The token i places behind the current one (0 = next).
     const Token& ahead(std::size_t i);
 
-    // Only while the current token is ArrayBegin: whether the array holds strings (false for an empty one).
+    // Only while the current token is ArrayBegin: whether the array holds strings (false for an
+    // empty one).
     [[nodiscard]] bool array_holds_strings();
 
-    // Only while the current token is ArrayBegin: append all elements and stop with ArrayEnd as the current token.
-    // False: an element is no number (no string); it is the current token then.
+    // Only while the current token is ArrayBegin: append all elements and stop with ArrayEnd as the
+    // current token. False: an element is no number (no string); it is the current token then.
     bool read_floats(std::vector<float>& out);
     bool read_doubles(std::vector<double>& out);
-    // Reals are truncated: *inexact is set to the first not integral one's place; *overflow to the first one's that
-    // does not fit (stored as the nearest int).
+    // Reals are truncated: *inexact is set to the first not integral one's place; *overflow to the
+    // first one's that does not fit (stored as the nearest int).
     struct IntTrouble {
         base::SourcePos inexact, overflow;
     };
     bool read_ints(std::vector<std::int32_t>& out, IntTrouble& trouble);
     bool read_strings(std::vector<std::string>& out);
 
-    // Keeps the text from the current token (a Name) on, for inline archives; stop_recording() returns it up to,
-    // without, the then current Name token.
+    // Keeps the text from the current token (a Name) on, for inline archives; stop_recording()
+    // returns it up to, without, the then current Name token.
     void start_recording();
     [[nodiscard]] std::string stop_recording();
 
@@ -76,8 +80,8 @@ private:
     bool skip_white();
     bool refill(const char*& keep);
     bool refill() {
-        const char* none = p_;
-        return refill(none);
+        const char* keep = p_;
+        return refill(keep);
     }
     void newline();
     [[nodiscard]] base::SourcePos place(const char* p) const;
@@ -86,7 +90,8 @@ private:
     std::unique_ptr<ByteSource> source_;
     const CommentHandler* on_comment_;
     std::vector<char> buffer_;
-    // [p_, end_) is unread; *end_ is a sentinel (NUL). buffer_[0] keeps the byte before the block, for CR LF.
+    // [p_, end_) is unread; *end_ is a sentinel (NUL). buffer_[0] keeps the byte before the block,
+    // for CR LF.
     const char* p_;
     const char* end_;
     bool at_end_ = false; // the source has no more

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parser's second half: parameter lists (ri.md 2.3 and section 10). A faulty parameter is reported and left out; the
-// request goes on without it.
+// The parser's second half: parameter lists (ri.md 2.3 and section 10). A faulty parameter is
+// reported and left out; the request goes on without it.
 #include "ribtools/number.h"
 #include "ribtools/rib_parse.h"
 #include "ribtools/spelling.h"
@@ -112,14 +112,17 @@ Parser::Resolved Parser::resolve_inline(std::string_view text, base::SourcePos p
     return {Resolved::Status::Known, d.decl, std::move(d.name)};
 }
 
-// The value of a parameter whose type is known, or guessed from it. False: reported or empty, the parameter is dropped.
+// The value of a parameter whose type is known, or guessed from it. False: reported or empty, the
+// parameter is dropped.
 bool Parser::read_value(Param& param, bool guess) {
     arg_name_ = param.name;
     const std::string head = std::string(request_name_) + ": parameter " + quote(param.name);
     switch (token().kind) {
-    case TokenKind::ArrayBegin: return read_array_value(param, guess);
+    case TokenKind::ArrayBegin:
+        return read_array_value(param, guess);
     case TokenKind::Number:
-    case TokenKind::String: return read_bare_value(param, guess);
+    case TokenKind::String:
+        return read_bare_value(param, guess);
     default:
         error(base::Severity::Error, base::Code::MissingData, token().pos,
               head + " has no value: got " + describe(token()) + "; parameter dropped");
@@ -199,8 +202,8 @@ bool Parser::read_bare_value(Param& param, bool guess) {
 // Whole items only. Colors become RGB. Outside primitives a parameter has one item.
 bool Parser::check_value(Param& param, const RequestRow& table_row) {
     const bool is_color = param.decl.type == ParamType::Color;
-    const std::size_t numbers = is_color ? colors_.num_samples()
-                                         : static_cast<std::size_t>(components(param.decl.type));
+    const std::size_t numbers =
+        is_color ? colors_.num_samples() : static_cast<std::size_t>(components(param.decl.type));
     const std::size_t per_item = numbers * static_cast<std::size_t>(param.decl.array_length);
     const std::size_t given = param.strings.size() + param.ints.size() + param.floats.size();
     const bool is_list = table_row.params != ParamUse::Primvars;
@@ -249,7 +252,8 @@ void Parser::skip_value() {
     }
 }
 
-// To behind the bracket that closes the array the current token lies in, or to a name, whichever comes first.
+// To behind the bracket that closes the array the current token lies in, or to a name, whichever
+// comes first.
 void Parser::skip_array() {
     while (token().kind != TokenKind::ArrayEnd && token().kind != TokenKind::Name &&
            token().kind != TokenKind::End) {

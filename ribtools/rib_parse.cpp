@@ -21,8 +21,9 @@ std::string quote(std::string_view text) {
 std::string handle_text(double number) {
     char text[64];
     const bool integral = number == std::trunc(number) && std::fabs(number) < 1e15;
-    const auto result = integral ? std::to_chars(text, std::end(text), static_cast<long long>(number))
-                                 : std::to_chars(text, std::end(text), number);
+    const auto result = integral
+                            ? std::to_chars(text, std::end(text), static_cast<long long>(number))
+                            : std::to_chars(text, std::end(text), number);
     return {text, result.ptr};
 }
 
@@ -61,13 +62,20 @@ template std::vector<double> ColorModel::to_rgb(const std::vector<double>&) cons
 
 std::string describe(const Token& token) {
     switch (token.kind) {
-    case TokenKind::End: return "the end of the file";
-    case TokenKind::Name: return "the request name " + quote(token.text);
-    case TokenKind::Number: return "a number";
-    case TokenKind::String: return "the string \"" + printable(token.text) + "\"";
-    case TokenKind::ArrayBegin: return "'['";
-    case TokenKind::ArrayEnd: return "']'";
-    case TokenKind::Bad: return std::string(token.reason) + " " + quote(token.text);
+    case TokenKind::End:
+        return "the end of the file";
+    case TokenKind::Name:
+        return "the request name " + quote(token.text);
+    case TokenKind::Number:
+        return "a number";
+    case TokenKind::String:
+        return "the string \"" + printable(token.text) + "\"";
+    case TokenKind::ArrayBegin:
+        return "'['";
+    case TokenKind::ArrayEnd:
+        return "']'";
+    case TokenKind::Bad:
+        return std::string(token.reason) + " " + quote(token.text);
     }
     return "";
 }
@@ -169,8 +177,8 @@ Parser::Outcome Parser::parse(Request& request, const RequestRow& table_row) {
     return finish(table_row, table_row.effect != BlockEffect::None);
 }
 
-// What follows a complete request must be a name. Blocks are opened and closed all the same: losing one would
-// change everything after it.
+// What follows a complete request must be a name. Blocks are opened and closed all the same: losing
+// one would change everything after it.
 Parser::Outcome Parser::finish(const RequestRow& table_row, bool taken_anyway) {
     if (token().kind == TokenKind::Name || token().kind == TokenKind::End) {
         return Outcome::Ok;
@@ -225,10 +233,14 @@ bool Parser::starts(char code) const {
     const TokenKind kind = token().kind;
     switch (code) {
     case 's':
-    case 'B': return kind == TokenKind::String || kind == TokenKind::ArrayBegin;
-    case 'h': return kind == TokenKind::String || kind == TokenKind::Number;
-    case 'S': return kind == TokenKind::ArrayBegin;
-    default: return kind == TokenKind::Number || kind == TokenKind::ArrayBegin;
+    case 'B':
+        return kind == TokenKind::String || kind == TokenKind::ArrayBegin;
+    case 'h':
+        return kind == TokenKind::String || kind == TokenKind::Number;
+    case 'S':
+        return kind == TokenKind::ArrayBegin;
+    default:
+        return kind == TokenKind::Number || kind == TokenKind::ArrayBegin;
     }
 }
 
@@ -237,15 +249,24 @@ Parser::Outcome Parser::parse_arg(char code, bool optional, Arg& arg) {
         return Outcome::Ok;
     }
     switch (code) {
-    case 'h': return handle(optional, arg);
-    case 's': return string(arg);
-    case 'S': return strings(arg);
-    case 'I': return ints(arg);
-    case 'F': return floats(arg);
-    case 'm': return matrix(arg);
-    case 'B': return basis(arg);
-    case 'v': return version(arg);
-    default: return Outcome::Ok;
+    case 'h':
+        return handle(optional, arg);
+    case 's':
+        return string(arg);
+    case 'S':
+        return strings(arg);
+    case 'I':
+        return ints(arg);
+    case 'F':
+        return floats(arg);
+    case 'm':
+        return matrix(arg);
+    case 'B':
+        return basis(arg);
+    case 'v':
+        return version(arg);
+    default:
+        return Outcome::Ok;
     }
 }
 
@@ -340,8 +361,9 @@ void Parser::note_int_trouble(const Lexer::IntTrouble& trouble, std::string_view
     }
 }
 
-// Tells LightSource "shader" "handle" ... from LightSource "shader" "parameter" value ...: strings up to the first
-// other value are the handle, if their number says so, and token-value pairs (ri.md 6.6).
+// Tells LightSource "shader" "handle" ... from LightSource "shader" "parameter" value ...: strings
+// up to the first other value are the handle, if their number says so, and token-value pairs
+// (ri.md 6.6).
 bool Parser::string_is_handle() {
     std::size_t num_strings = 1;
     while (lexer_.ahead(num_strings - 1).kind == TokenKind::String) {

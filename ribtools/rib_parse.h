@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tokens to requests, driven by the args and params columns of ri_requests.def.
 //
-// In: a Lexer. Out: one complete, well-formed Request per call of next(). A malformed one is reported with its place,
-// what was expected and what was done, and reading resumes at the next request name (ri.md 2.4). The dictionary and the
-// color model are read when a value is met, so a Declare takes effect on the next request, as the standard demands.
+// In: a Lexer. Out: one complete, well-formed Request per call of next(). A malformed one is
+// reported with its place, what was expected and what was done, and reading resumes at the next
+// request name (ri.md 2.4). The dictionary and the color model are read when a value is met, so a
+// Declare takes effect on the next request, as the standard demands.
 #pragma once
 
 #include "ribtools/declare.h"
@@ -19,7 +20,8 @@
 
 namespace rib {
 
-// ColorSamples: how many numbers a color has in the stream, and RGB = sum of samples[i] * rgb_of_sample[i].
+// ColorSamples: how many numbers a color has in the stream, and RGB = sum of samples[i] *
+// rgb_of_sample[i].
 struct ColorModel {
     std::vector<std::array<float, 3>> rgb_of_sample = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
@@ -33,12 +35,13 @@ class Parser {
 public:
     Parser(Lexer& lexer, base::Diag& diag, const Dictionary& dictionary, const ColorModel& colors);
 
-    // The next request; false at the end of the stream. Requests without arguments and parameters are handed on
-    // before the token behind them is read, so that WorldEnd on a pipe renders at once.
+    // The next request; false at the end of the stream. Requests without arguments and parameters
+    // are handed on before the token behind them is read, so that WorldEnd on a pipe renders at
+    // once.
     bool next(Request& request);
 
-    // Text of an inline archive: from here to the matching ArchiveEnd, which is consumed. *start is the place of
-    // its first token. False (reported at `opened`): the stream ended first.
+    // Text of an inline archive: from here to the matching ArchiveEnd, which is consumed. *start is
+    // the place of its first token. False (reported at `opened`): the stream ended first.
     bool record_archive(base::SourcePos opened, std::string& text, base::SourcePos& start);
 
 private:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the bytes of a RIB stream come from: a file, standard input, memory. Read block by block, so that no stream is
-// ever held whole. Compressed streams will be one more source, chosen in open_file() by their first bytes.
+// Where the bytes of a RIB stream come from: a file, standard input, memory. Read block by block,
+// so that no stream is ever held whole. Compressed streams will be one more source, chosen in
+// open_file() by their first bytes.
 #pragma once
 
 #include <cstddef>

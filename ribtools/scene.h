@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene: everything one WorldBegin..WorldEnd described, as plain records. Filled by the graphics state,
-// immutable afterwards; geometry, tracer and radiosity only read it. Records refer to each other by index.
+// The scene: everything one WorldBegin..WorldEnd described, as plain records. Filled by the
+// graphics state, immutable afterwards; geometry, tracer and radiosity only read it. Records refer
+// to each other by index.
 //
 // Transforms are kept as written, in double, per motion key: *_from_* reads destination-from-source
-// (runtime/base/mat.h). "World" is the space after WorldBegin; camera space is left-handed, +z into the scene.
+// (runtime/base/mat.h). "World" is the space after WorldBegin; camera space is left-handed, +z into
+// the scene.
 #pragma once
 
 #include "ribtools/param.h"
@@ -26,8 +28,9 @@ constexpr float ri_infinity = 1.0e38f;
 constexpr float ri_epsilon = 1.0e-10f;
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
-// A value that copies of its owner share until one of them edits it: attribute states differ in little, and there may
-// be millions of them. Reads like the value; edit() gives an unshared one to write to.
+// A value that copies of its owner share until one of them edits it: attribute states differ in
+// little, and there may be millions of them. Reads like the value; edit() gives an unshared one to
+// write to.
 template <class T> class Shared {
 public:
     Shared() = default;
@@ -66,9 +69,11 @@ private:
     std::shared_ptr<T> p_;
 };
 
-// --- transforms -------------------------------------------------------------------------------------------------
+// --- transforms
+// -------------------------------------------------------------------------------------------------
 
-// A possibly moving transform: one key when still. Times increase; linear between keys, constant outside.
+// A possibly moving transform: one key when still. Times increase; linear between keys, constant
+// outside.
 struct Transform {
     struct Key {
         float time = 0;
@@ -82,12 +87,14 @@ struct Transform {
 };
 using TransformId = std::uint32_t; // index into Scene::transforms
 
-// --- shaders and lights -----------------------------------------------------------------------------------------
+// --- shaders and lights
+// -----------------------------------------------------------------------------------------
 
 struct ShaderCall {
     std::string name; // "" = none; as written, path and suffix included
     ParamList params;
-    TransformId world_from_shader = 0; // for lights made before WorldBegin: camera-from-shader, see Light
+    TransformId world_from_shader =
+        0; // for lights made before WorldBegin: camera-from-shader, see Light
     std::uint32_t same_params_as = none; // first ShaderCall of the scene with equal name and params
     base::SourcePos pos;
 };
@@ -98,12 +105,13 @@ struct Light {
     std::string handle;
     bool in_camera_space = false; // made before WorldBegin: world_from_shader is camera_from_shader
     bool is_area = false;
-    std::uint32_t attributes = 0;        // attribute state when it was made ("light" "shadows", Color ...)
+    std::uint32_t attributes = 0; // attribute state when it was made ("light" "shadows", Color ...)
     std::vector<std::uint32_t> area_primitives; // primitives that form an area light
 };
 using LightId = std::uint32_t;
 
-// --- attributes -------------------------------------------------------------------------------------------------
+// --- attributes
+// -------------------------------------------------------------------------------------------------
 
 enum class Interpolation : std::uint8_t { Constant, Smooth };
 
@@ -122,20 +130,24 @@ struct TrimCurve {
     friend bool operator==(const TrimCurve&, const TrimCurve&) = default;
 };
 
-// Attribute state of one primitive. Shared: consecutive primitives with equal state have the same index.
+// Attribute state of one primitive. Shared: consecutive primitives with equal state have the same
+// index.
 struct Attributes {
     std::array<float, 3> color{1, 1, 1};
     std::array<float, 3> opacity{1, 1, 1};
     std::array<float, 8> texture_coordinates{0, 0, 1, 0, 0, 1, 1, 1};
-    ShaderId surface = none, displacement = none, atmosphere = none, interior = none, exterior = none;
+    ShaderId surface = none, displacement = none, atmosphere = none, interior = none,
+             exterior = none;
     Shared<std::vector<LightId>> lights; // on, in declaration order
     LightId area_light = none;
     float shading_rate = 1;
     Interpolation interpolation = Interpolation::Constant;
     int matte = 0;
     int sides = 2;
-    bool orientation_matches = true; // ri.md 8.6: current orientation == coordinate system orientation
-    std::array<float, 6> bound{-ri_infinity, ri_infinity, -ri_infinity, ri_infinity, -ri_infinity, ri_infinity};
+    bool orientation_matches =
+        true; // ri.md 8.6: current orientation == coordinate system orientation
+    std::array<float, 6> bound{-ri_infinity, ri_infinity,  -ri_infinity,
+                               ri_infinity,  -ri_infinity, ri_infinity};
     bool has_bound = false;
     bool has_detail = false;
     float detail_area_px = ri_infinity; // raster area of the Detail box, times RelativeDetail
@@ -143,17 +155,28 @@ struct Attributes {
     Shared<std::map<std::string, float>> approximation; // GeometricApproximation
     Shared<Basis> basis;
     Shared<TrimCurve> trim;
-    // Attribute "group" "name": key "group:name"; standard ones with their table defaults applied by attribute().
+    // Attribute "group" "name": key "group:name"; standard ones with their table defaults applied
+    // by attribute().
     Shared<std::map<std::string, Param>> user;
-    Shared<std::map<std::string, TransformId>> scoped_systems; // ScopedCoordinateSystem, world_from_*
+    Shared<std::map<std::string, TransformId>>
+        scoped_systems; // ScopedCoordinateSystem, world_from_*
 
     [[nodiscard]] const Param* find(const std::string& group_name) const;
     friend bool operator==(const Attributes&, const Attributes&) = default;
 };
 
-// --- primitives -------------------------------------------------------------------------------------------------
+// --- primitives
+// -------------------------------------------------------------------------------------------------
 
-enum class QuadricKind : std::uint8_t { Sphere, Cone, Cylinder, Hyperboloid, Paraboloid, Disk, Torus };
+enum class QuadricKind : std::uint8_t {
+    Sphere,
+    Cone,
+    Cylinder,
+    Hyperboloid,
+    Paraboloid,
+    Disk,
+    Torus
+};
 
 // Arguments as in the request (ri.md 6.9), angles in degrees.
 struct Quadric {
@@ -171,7 +194,7 @@ struct Polygons {
 struct Patches { // Patch and PatchMesh
     bool bicubic = false;
     bool is_mesh = false; // PatchMesh
-    int nu = 0, nv = 0; // control points
+    int nu = 0, nv = 0;   // control points
     bool uperiodic = false, vperiodic = false;
 };
 
@@ -221,23 +244,23 @@ struct Procedural {
     std::array<float, 6> bound{};
 };
 
-using Shape = std::variant<Quadric, Polygons, Patches, NuPatch, SubdivisionMesh, Points, Curves, Blobby,
-                           Geometry, Procedural>;
+using Shape = std::variant<Quadric, Polygons, Patches, NuPatch, SubdivisionMesh, Points, Curves,
+                           Blobby, Geometry, Procedural>;
 
 struct Primitive {
     Shape shape;
     ParamList params; // counts already checked against the shape (ri.md 10.3)
-    // Keys of a deformation motion block: empty when still. motion[0] has the first time only (its values are shape and
-    // params above); the others have the same topology.
+    // Keys of a deformation motion block: empty when still. motion[0] has the first time only (its
+    // values are shape and params above); the others have the same topology.
     struct MotionKey {
         float time = 0;
         Shape shape;
         ParamList params;
     };
     std::vector<MotionKey> motion;
-    std::uint32_t attributes = 0;          // index into Scene::attributes
-    TransformId world_from_object = 0;     // inside an Object: object-definition-from-primitive
-    std::uint32_t solid = none;            // innermost solid node, index into Scene::solids
+    std::uint32_t attributes = 0;      // index into Scene::attributes
+    TransformId world_from_object = 0; // inside an Object: object-definition-from-primitive
+    std::uint32_t solid = none;        // innermost solid node, index into Scene::solids
     base::SourcePos pos;
 };
 
@@ -253,8 +276,8 @@ struct Object {
     Shared<std::vector<Primitive>> primitives;
 };
 
-// ObjectInstance. Member i of the object is drawn with attributes[i]: the attributes at the instance, with those
-// the object itself set inside overriding them (ri.md 12.2).
+// ObjectInstance. Member i of the object is drawn with attributes[i]: the attributes at the
+// instance, with those the object itself set inside overriding them (ri.md 12.2).
 struct Instance {
     std::uint32_t object = 0;
     TransformId world_from_object = 0; // world from object-definition space
@@ -263,7 +286,8 @@ struct Instance {
     base::SourcePos pos;
 };
 
-// --- options ----------------------------------------------------------------------------------------------------
+// --- options
+// ----------------------------------------------------------------------------------------------------
 
 struct Quantize {
     float one = 255, min = 0, max = 255, dither = 0.5f;
@@ -275,16 +299,17 @@ struct Display {
     base::SourcePos pos;
 };
 
-// RiOptions frozen at WorldBegin. Optional things are resolved by resolve(): see the member comments.
+// RiOptions frozen at WorldBegin. Optional things are resolved by resolve(): see the member
+// comments.
 struct Options {
     int frame = 0;
     bool in_frame = false;
     int xres = 640, yres = 480;
     float pixel_aspect = 1;
     std::array<float, 4> crop{0, 1, 0, 1};
-    float frame_aspect = 0;                 // 0: not given
+    float frame_aspect = 0; // 0: not given
     bool has_screen_window = false;
-    std::array<float, 4> screen_window{};   // left right bottom top, always valid after WorldBegin
+    std::array<float, 4> screen_window{};    // left right bottom top, always valid after WorldBegin
     std::string projection = "orthographic"; // perspective, orthographic, null, or an unknown name
     ParamList projection_params;
     float fov_deg = 90;
@@ -312,16 +337,19 @@ struct Options {
     int color_samples = 3;
     // Option "group" "name": key "group:name".
     std::map<std::string, Param> user;
-    // Search paths after & and @ were expanded: "shader", "texture", "archive", "procedural", "display".
+    // Search paths after & and @ were expanded: "shader", "texture", "archive", "procedural",
+    // "display".
     std::map<std::string, std::vector<std::string>> search_paths;
 };
 
-// --- scene ------------------------------------------------------------------------------------------------------
+// --- scene
+// ------------------------------------------------------------------------------------------------------
 
 struct Scene {
     Options options;
     Transform camera_from_world;
-    // Transformations given before Projection act between camera and screen (ri.md 6.3); usually identity.
+    // Transformations given before Projection act between camera and screen (ri.md 6.3); usually
+    // identity.
     base::Mat4 screen_from_camera_extra;
     std::vector<Transform> transforms;
     std::vector<Attributes> attributes;
@@ -331,7 +359,8 @@ struct Scene {
     std::vector<Primitive> primitives;
     std::vector<Object> objects;
     std::vector<Instance> instances;
-    std::map<std::string, TransformId> coordinate_systems; // CoordinateSystem "name": world_from_named
+    std::map<std::string, TransformId>
+        coordinate_systems; // CoordinateSystem "name": world_from_named
 };
 
 } // namespace rib

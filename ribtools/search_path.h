@@ -8,8 +8,8 @@
 
 namespace rib {
 
-// Directories separated by ':' or ';'. "&" = previous, "@" = defaults, "~" = home, $NAME ${NAME} %NAME% =
-// environment variables (empty if unset). Empty elements are dropped.
+// Directories separated by ':' or ';'. "&" = previous, "@" = defaults, "~" = home, $NAME ${NAME}
+// %NAME% = environment variables (empty if unset). Empty elements are dropped.
 [[nodiscard]] std::vector<std::string> expand_search_path(std::string_view value,
                                                           const std::vector<std::string>& previous,
                                                           const std::vector<std::string>& defaults);

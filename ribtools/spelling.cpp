@@ -55,7 +55,8 @@ std::string printable(std::string_view text) {
             out += c;
         } else {
             char code[8];
-            std::snprintf(code, sizeof code, "\\%03o", static_cast<unsigned>(static_cast<unsigned char>(c)));
+            std::snprintf(code, sizeof code, "\\%03o",
+                          static_cast<unsigned>(static_cast<unsigned char>(c)));
             out += code;
         }
     }

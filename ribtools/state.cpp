@@ -52,7 +52,8 @@ std::size_t hash_of(const std::string& name, const ParamList& params) {
     return hash;
 }
 
-// Records with one hash value are compared up to this many; beyond, a duplicate costs less than the search.
+// Records with one hash value are compared up to this many; beyond, a duplicate costs less than the
+// search.
 constexpr int max_candidates = 16;
 
 } // namespace
@@ -215,16 +216,17 @@ void State::do_Declare(Request& request) {
     const Declaration d = parse_declaration(text);
     const Dictionary::Entry* old = dictionary_.find(name);
     if (!d.error.empty()) {
-        error(base::Code::Syntax, request,
-              quoted(name) + " " + quoted(text) + ": " + d.error +
-                  "; values of this name are skipped");
+        diag_.report_once("declare:" + name + ":" + text, base::Severity::Error, base::Code::Syntax,
+                          request.pos,
+                          "Declare: " + quoted(name) + " " + quoted(text) + ": " + d.error +
+                              "; values of this name are skipped");
         dictionary_.set(name, {{}, false, true});
         return;
     }
     if (old && old->predeclared && (old->decl.type != d.decl.type)) {
         warn(base::Code::Consistency, request,
-             quoted(name) + " is predeclared as " + quoted(declaration_text(old->decl)) +
-                 "; now " + quoted(declaration_text(d.decl)));
+             quoted(name) + " is predeclared as " + quoted(declaration_text(old->decl)) + "; now " +
+                 quoted(declaration_text(d.decl)));
     }
     dictionary_.set(name, {d.decl, false, false});
 }

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The graphics state (ri.md 1.2 and sections 5 to 8, 12): requests enter in order, finished scenes leave to the Backend.
+// The graphics state (ri.md 1.2 and sections 5 to 8, 12): requests enter in order, finished scenes
+// leave to the Backend.
 //
-// Every request of ri_requests.def has a body do_<name>; a missing one is a link error. Attributes and transformations are
-// values that blocks save; they are copied into the scene only when a primitive, light or shader needs them and they
-// have changed since (freeze_*), so equal states share one record.
+// Every request of ri_requests.def has a body do_<name>; a missing one is a link error. Attributes
+// and transformations are values that blocks save; they are copied into the scene only when a
+// primitive, light or shader needs them and they have changed since (freeze_*), so equal states
+// share one record.
 #pragma once
 
 #include "ribtools/backend.h"
@@ -29,7 +31,8 @@ public:
     virtual void read_archive(const std::string& name, base::SourcePos pos) = 0;
     virtual void begin_archive(const std::string& name, base::SourcePos pos) = 0;
     virtual void conditional(const Request& request) = 0;
-    virtual void forget_archives(std::size_t keep) = 0; // those defined last, at the end of a frame or world
+    virtual void
+    forget_archives(std::size_t keep) = 0; // those defined last, at the end of a frame or world
     [[nodiscard]] virtual std::size_t num_archives() const = 0;
 };
 
@@ -42,7 +45,8 @@ public:
 
     // Checks that the request is legal here and carries it out. Takes what it can from the request.
     void execute(Request& request);
-    // The stream has ended: blocks opened in it are closed with a message, an unfinished world is dropped.
+    // The stream has ended: blocks opened in it are closed with a message, an unfinished world is
+    // dropped.
     void close_blocks(base::SourcePos end, std::size_t keep);
     [[nodiscard]] std::size_t depth() const { return blocks_.depth(); }
     // The backend returned false or the error handler asks to end the run.
@@ -68,7 +72,9 @@ private:
     using Body = void (State::*)(Request&);
     static const Body bodies[];
 
-    void dispatch(Request& request) { (this->*bodies[static_cast<std::size_t>(request.id)])(request); }
+    void dispatch(Request& request) {
+        (this->*bodies[static_cast<std::size_t>(request.id)])(request);
+    }
     [[nodiscard]] bool admit(const Request& request);
 
     // --- messages ---
@@ -85,7 +91,8 @@ private:
 
     // --- blocks ---
     void open(BlockKind kind, const Request& request);
-    // Closes the innermost block of this kind, with a message unwinding what overlaps it. False: there is none.
+    // Closes the innermost block of this kind, with a message unwinding what overlaps it. False:
+    // there is none.
     bool close(BlockKind kind, const Request& request);
     void restore(BlockKind kind);
     void end_world(bool render);
@@ -131,8 +138,8 @@ private:
 
     // --- objects ---
     struct InstanceSite;
-    void instantiate(std::uint32_t object, const InstanceSite& site, const Request& request, int depth,
-                     std::size_t& budget);
+    void instantiate(std::uint32_t object, const InstanceSite& site, const Request& request,
+                     int depth, std::size_t& budget);
     void become_primitives(const Instance& instance, const InstanceSite& site);
     [[nodiscard]] std::uint32_t replay(const ObjectRecord& record, std::uint32_t edit,
                                        const Attributes& start, const Transform& place);
@@ -146,10 +153,12 @@ private:
     ColorModel colors_;
     Options options_;
     Frozen<Attributes> attributes_;
-    // World-from-current inside a world, camera-from-current before it, definition-from-current in an object.
+    // World-from-current inside a world, camera-from-current before it, definition-from-current in
+    // an object.
     Frozen<Transform> transform_;
     base::Mat4 screen_from_camera_extra_;
-    std::unique_ptr<Scene> scene_; // grows until WorldEnd; before WorldBegin: what the next world starts with
+    std::unique_ptr<Scene>
+        scene_; // grows until WorldEnd; before WorldBegin: what the next world starts with
     Blocks blocks_;
     std::vector<std::unique_ptr<Saved>> saved_; // one per open block
     std::unordered_map<std::string, LightId> light_handles_;
@@ -158,7 +167,8 @@ private:
     std::unordered_multimap<std::size_t, std::uint32_t> attribute_index_, shader_index_;
     std::vector<float> motion_times_;
     std::vector<Request> motion_samples_;
-    std::vector<Primitive>* motion_sink_ = nullptr; // where emit() leaves samples of moving geometry
+    std::vector<Primitive>* motion_sink_ =
+        nullptr; // where emit() leaves samples of moving geometry
     std::vector<std::shared_ptr<ObjectRecord>> objects_; // parallel to Scene::objects
     ObjectRecord* open_object_ = nullptr;
     std::uint32_t current_edit_ = none;

@@ -144,8 +144,8 @@ void State::do_Matte(Request& request) {
 
 LightId State::add_light(Request& request, bool is_area) {
     Light light;
-    light.shader = add_shader(request.string(0), std::move(request.params), freeze_transform(),
-                              request.pos);
+    light.shader =
+        add_shader(request.string(0), std::move(request.params), freeze_transform(), request.pos);
     light.handle = request.string(1);
     light.in_camera_space = !blocks_.inside(BlockKind::World);
     light.is_area = is_area;
@@ -178,7 +178,8 @@ void State::do_Illuminate(Request& request) {
     const std::string& handle = request.string(0);
     const auto it = light_handles_.find(handle);
     if (it == light_handles_.end()) {
-        error(base::Code::BadHandle, request, "no light has the handle " + quoted(handle) + "; ignored");
+        error(base::Code::BadHandle, request,
+              "no light has the handle " + quoted(handle) + "; ignored");
         return;
     }
     const LightId id = it->second;
@@ -238,7 +239,8 @@ void State::do_GeometricApproximation(Request& request) {
 }
 
 void State::do_GeometricRepresentation(Request& request) {
-    warn_once("GeometricRepresentation", base::Code::Unimplement, request, "a preview hint; ignored");
+    warn_once("GeometricRepresentation", base::Code::Unimplement, request,
+              "a preview hint; ignored");
 }
 
 // ri.md 8.6: one bit says whether the current orientation is that of the coordinate system.

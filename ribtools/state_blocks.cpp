@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// State: blocks that save and restore, worlds that become scenes, motion blocks (ri.md 5, 6.2, 12.3).
+// State: blocks that save and restore, worlds that become scenes, motion blocks (ri.md
+// 5, 6.2, 12.3).
 #include "ribtools/state_impl.h"
 
 #include <algorithm>
@@ -17,9 +18,9 @@ void State::open(BlockKind kind, const Request& request) {
         }
     }
     if (kind == BlockKind::Frame || kind == BlockKind::World) {
-        saved->stream = std::make_unique<Saved::Stream>(Saved::Stream{
-            options_, std::make_unique<Scene>(*scene_), objects_, light_handles_, object_handles_,
-            screen_from_camera_extra_, host_.num_archives()});
+        saved->stream = std::make_unique<Saved::Stream>(
+            Saved::Stream{options_, std::make_unique<Scene>(*scene_), objects_, light_handles_,
+                          object_handles_, screen_from_camera_extra_, host_.num_archives()});
     }
     if (kind == BlockKind::Resource) {
         saved->resources = std::make_unique<decltype(resources_)>(resources_);
@@ -63,10 +64,10 @@ bool State::close(BlockKind kind, const Request& request) {
     const std::size_t depth = blocks_.find(kind);
     // A stray end inside a world must not take the world with it.
     const bool is_outer = kind == BlockKind::World || kind == BlockKind::Frame;
-    const std::size_t fence = is_outer ? 0
-                                       : std::max({blocks_.find(BlockKind::World),
-                                                   blocks_.find(BlockKind::Frame),
-                                                   blocks_.find(BlockKind::Object)});
+    const std::size_t fence =
+        is_outer ? 0
+                 : std::max({blocks_.find(BlockKind::World), blocks_.find(BlockKind::Frame),
+                             blocks_.find(BlockKind::Object)});
     if (depth == 0 || depth < fence) {
         error(base::Code::Nesting, request,
               "no " + std::string(block_name(kind)) + "Begin is open; ignored");
@@ -89,11 +90,11 @@ bool State::close(BlockKind kind, const Request& request) {
 void State::close_blocks(base::SourcePos end, std::size_t keep) {
     while (blocks_.depth() > keep) {
         const Blocks::Block block = blocks_.top();
-        diag_.report(base::Severity::Error, base::Code::Nesting, end,
-                     "end of input inside the " + std::string(block_name(block.kind)) +
-                         "Begin of line " + std::to_string(block.pos.line) +
-                         (block.kind == BlockKind::World ? "; the world is not rendered"
-                                                         : "; closed"));
+        diag_.report(
+            base::Severity::Error, base::Code::Nesting, end,
+            "end of input inside the " + std::string(block_name(block.kind)) + "Begin of line " +
+                std::to_string(block.pos.line) +
+                (block.kind == BlockKind::World ? "; the world is not rendered" : "; closed"));
         if (block.kind == BlockKind::Object) {
             finish_object();
         }
@@ -176,7 +177,8 @@ void State::resolve_options() {
     }
 }
 
-// What was placed relative to the camera before the world began, save lights, gets its place in the world.
+// What was placed relative to the camera before the world began, save lights, gets its place in the
+// world.
 void State::bring_into_world() {
     const Transform world_from_camera = *inverse(scene_->camera_from_world);
     std::vector<bool> is_light(scene_->shaders.size());
@@ -261,8 +263,8 @@ void State::do_MotionEnd(Request& request) {
         return;
     }
     bool good = samples.size() == times.size();
-    std::string what = std::to_string(times.size()) + " times but " +
-                       std::to_string(samples.size()) + " requests";
+    std::string what =
+        std::to_string(times.size()) + " times but " + std::to_string(samples.size()) + " requests";
     for (std::size_t i = 1; good && i < samples.size(); ++i) {
         if (samples[i].id != samples[0].id) {
             good = false;
@@ -280,7 +282,8 @@ void State::do_MotionEnd(Request& request) {
     if (!admit(samples[0])) {
         return;
     }
-    if (!good || samples.size() == 1 || (kind != RequestKind::Transform && kind != RequestKind::Primitive)) {
+    if (!good || samples.size() == 1 ||
+        (kind != RequestKind::Transform && kind != RequestKind::Primitive)) {
         execute(samples[0]); // moving shading: the value at the first time
     } else if (kind == RequestKind::Transform) {
         move_transform(samples, times);

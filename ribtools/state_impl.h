@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the bodies of State share besides its header: saved states and object records. Included by state*.cpp only.
+// What the bodies of State share besides its header: saved states and object records. Included by
+// state*.cpp only.
 #pragma once
 
 #include "ribtools/spelling.h"
@@ -7,7 +8,8 @@
 
 namespace rib {
 
-// What a block puts back. Frames and worlds also put back the scene they began with and the handles made inside.
+// What a block puts back. Frames and worlds also put back the scene they began with and the handles
+// made inside.
 struct State::Saved {
     struct Stream {
         Options options;
@@ -26,7 +28,8 @@ struct State::Saved {
     std::uint32_t solid = none;
 };
 
-// One attribute request inside an object; the chain of parents is what the object itself set for a primitive.
+// One attribute request inside an object; the chain of parents is what the object itself set for a
+// primitive.
 struct State::Edit {
     std::uint32_t parent = none;
     Request request;

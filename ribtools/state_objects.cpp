@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // State: retained objects and their instances (ri.md 12.2).
 //
-// Geometry is kept once, in the space of the definition. What an object itself sets (its edits) is kept as requests and
-// replayed on the attributes in force at each instance, so the result is what replaying the whole object would give.
+// Geometry is kept once, in the space of the definition. What an object itself sets (its edits) is
+// kept as requests and replayed on the attributes in force at each instance, so the result is what
+// replaying the whole object would give.
 #include "ribtools/state_impl.h"
 
 namespace rib {
@@ -52,7 +53,8 @@ void State::do_ObjectEnd(Request& request) {
     }
 }
 
-// The attributes that the chain of edits ending at `edit` makes of `start`. The state's own are borrowed meanwhile.
+// The attributes that the chain of edits ending at `edit` makes of `start`. The state's own are
+// borrowed meanwhile.
 std::uint32_t State::replay(const ObjectRecord& record, std::uint32_t edit, const Attributes& start,
                             const Transform& place) {
     std::vector<std::uint32_t> chain;
@@ -82,9 +84,10 @@ std::uint32_t State::replay(const ObjectRecord& record, std::uint32_t edit, cons
 void State::instantiate(std::uint32_t object, const InstanceSite& site, const Request& request,
                         int depth, std::size_t& budget) {
     if (depth > max_object_depth || budget == 0) {
-        diag_.report_once("object-expansion", base::Severity::Error, base::Code::Limit, request.pos,
-                          "ObjectInstance: objects in objects expand to too many instances; the rest "
-                          "is left out");
+        diag_.report_once(
+            "object-expansion", base::Severity::Error, base::Code::Limit, request.pos,
+            "ObjectInstance: objects in objects expand to too many instances; the rest "
+            "is left out");
         return;
     }
     --budget;
@@ -139,8 +142,8 @@ void State::become_primitives(const Instance& instance, const InstanceSite& site
 void State::do_ObjectInstance(Request& request) {
     const std::string& handle = request.string(0);
     const auto it = object_handles_.find(handle);
-    const bool is_open = open_object_ && it != object_handles_.end() &&
-                         it->second == objects_.size() - 1;
+    const bool is_open =
+        open_object_ && it != object_handles_.end() && it->second == objects_.size() - 1;
     if (it == object_handles_.end() || is_open) {
         error(base::Code::BadHandle, request,
               is_open ? "object " + quoted(handle) + " would hold itself; skipped"

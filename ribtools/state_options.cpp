@@ -109,7 +109,8 @@ void State::do_ClippingPlane(Request& request) {
     const base::V3d P = base::point(m, {request.number(0), request.number(1), request.number(2)});
     const base::V3d n = base::normal_by_inverse(*inverse_m, normal);
     const bool in_world = blocks_.inside(BlockKind::World);
-    (in_world ? scene_->options : options_).clipping_planes.push_back({{P.x, P.y, P.z}, {n.x, n.y, n.z}});
+    (in_world ? scene_->options : options_)
+        .clipping_planes.push_back({{P.x, P.y, P.z}, {n.x, n.y, n.z}});
 }
 
 void State::do_DepthOfField(Request& request) {
@@ -156,9 +157,18 @@ void State::do_PixelSamples(Request& request) {
 }
 
 void State::do_PixelFilter(Request& request) {
-    static constexpr std::string_view known[] = {
-        "box",    "triangle", "catmull-rom",     "gaussian", "sinc",
-        "mitchell", "disk",   "bessel", "blackman-harris", "lanczos", "separable-catmull-rom", "b-spline"};
+    static constexpr std::string_view known[] = {"box",
+                                                 "triangle",
+                                                 "catmull-rom",
+                                                 "gaussian",
+                                                 "sinc",
+                                                 "mitchell",
+                                                 "disk",
+                                                 "bessel",
+                                                 "blackman-harris",
+                                                 "lanczos",
+                                                 "separable-catmull-rom",
+                                                 "b-spline"};
     std::string name = request.string(0);
     std::transform(name.begin(), name.end(), name.begin(),
                    [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
@@ -240,9 +250,9 @@ void State::do_DisplayChannel(Request& request) {
 // --- other options ---
 
 void State::do_Hider(Request& request) {
-    static constexpr std::string_view known[] = {"hidden",   "null",      "paint",  "stochastic",
-                                                 "zbuffer",  "raytrace",  "photon", "depthmask",
-                                                 "bake"};
+    static constexpr std::string_view known[] = {"hidden",     "null",      "paint",
+                                                 "stochastic", "zbuffer",   "raytrace",
+                                                 "photon",     "depthmask", "bake"};
     const std::string& name = request.string(0);
     if (std::find(std::begin(known), std::end(known), name) == std::end(known)) {
         warn_once("hider:" + name, base::Code::Incapable, request,
@@ -255,8 +265,8 @@ void State::do_Hider(Request& request) {
     options_.hider_params = std::move(request.params);
 }
 
-// nRGB: one row of three per sample. RGBn is only needed to convert back, which nothing here does; files that put
-// both into one array are told by its length.
+// nRGB: one row of three per sample. RGBn is only needed to convert back, which nothing here does;
+// files that put both into one array are told by its length.
 void State::do_ColorSamples(Request& request) {
     std::vector<float> n_rgb = std::move(request.args[0].floats);
     if (!request.args[1].given && n_rgb.size() % 6 == 0) {
@@ -309,7 +319,8 @@ void State::set_search_path(const Param& param) {
     std::vector<std::string> expanded;
     for (const std::string& value : param.strings) {
         for (std::string& directory : expand_search_path(
-                 value, path, defaults == config_.default_paths.end() ? no_defaults : defaults->second)) {
+                 value, path,
+                 defaults == config_.default_paths.end() ? no_defaults : defaults->second)) {
             expanded.push_back(std::move(directory));
         }
     }
@@ -352,12 +363,26 @@ void State::make_texture(Request& request) {
     backend_.make_texture(t);
 }
 
-void State::do_MakeTexture(Request& request) { make_texture(request); }
-void State::do_MakeBump(Request& request) { make_texture(request); }
-void State::do_MakeLatLongEnvironment(Request& request) { make_texture(request); }
-void State::do_MakeCubeFaceEnvironment(Request& request) { make_texture(request); }
-void State::do_MakeShadow(Request& request) { make_texture(request); }
-void State::do_MakeOcclusion(Request& request) { make_texture(request); }
-void State::do_MakeBrickMap(Request& request) { make_texture(request); }
+void State::do_MakeTexture(Request& request) {
+    make_texture(request);
+}
+void State::do_MakeBump(Request& request) {
+    make_texture(request);
+}
+void State::do_MakeLatLongEnvironment(Request& request) {
+    make_texture(request);
+}
+void State::do_MakeCubeFaceEnvironment(Request& request) {
+    make_texture(request);
+}
+void State::do_MakeShadow(Request& request) {
+    make_texture(request);
+}
+void State::do_MakeOcclusion(Request& request) {
+    make_texture(request);
+}
+void State::do_MakeBrickMap(Request& request) {
+    make_texture(request);
+}
 
 } // namespace rib

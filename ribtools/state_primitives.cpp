@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// State: primitives and solids (ri.md 6.9, 6.10, 12.1). Requests become shapes here; check.cpp judges them.
+// State: primitives and solids (ri.md 6.9, 6.10, 12.1). Requests become shapes here; check.cpp
+// judges them.
 #include "ribtools/check.h"
 #include "ribtools/number.h"
 #include "ribtools/state_impl.h"
@@ -99,13 +100,27 @@ void State::quadric(Request& request, QuadricKind kind, int num_args) {
     emit(q, request);
 }
 
-void State::do_Sphere(Request& request) { quadric(request, QuadricKind::Sphere, 4); }
-void State::do_Cone(Request& request) { quadric(request, QuadricKind::Cone, 3); }
-void State::do_Cylinder(Request& request) { quadric(request, QuadricKind::Cylinder, 4); }
-void State::do_Hyperboloid(Request& request) { quadric(request, QuadricKind::Hyperboloid, 7); }
-void State::do_Paraboloid(Request& request) { quadric(request, QuadricKind::Paraboloid, 4); }
-void State::do_Disk(Request& request) { quadric(request, QuadricKind::Disk, 3); }
-void State::do_Torus(Request& request) { quadric(request, QuadricKind::Torus, 5); }
+void State::do_Sphere(Request& request) {
+    quadric(request, QuadricKind::Sphere, 4);
+}
+void State::do_Cone(Request& request) {
+    quadric(request, QuadricKind::Cone, 3);
+}
+void State::do_Cylinder(Request& request) {
+    quadric(request, QuadricKind::Cylinder, 4);
+}
+void State::do_Hyperboloid(Request& request) {
+    quadric(request, QuadricKind::Hyperboloid, 7);
+}
+void State::do_Paraboloid(Request& request) {
+    quadric(request, QuadricKind::Paraboloid, 4);
+}
+void State::do_Disk(Request& request) {
+    quadric(request, QuadricKind::Disk, 3);
+}
+void State::do_Torus(Request& request) {
+    quadric(request, QuadricKind::Torus, 5);
+}
 
 // --- polygons: all in the form of PointsGeneralPolygons ---
 
@@ -147,8 +162,10 @@ void State::do_GeneralPolygon(Request& request) {
     for (const std::int32_t count : loops) {
         wanted += std::max(count, 0);
     }
-    // Loops that ask for more vertices than there are get no huge index list: check_primitive counts again.
-    const std::size_t have = static_cast<std::size_t>(std::min<std::int64_t>(wanted, static_cast<std::int64_t>(n)));
+    // Loops that ask for more vertices than there are get no huge index list: check_primitive
+    // counts again.
+    const std::size_t have =
+        static_cast<std::size_t>(std::min<std::int64_t>(wanted, static_cast<std::int64_t>(n)));
     polygons(request, {num_loops}, loops, counting(have));
 }
 
@@ -168,8 +185,8 @@ void State::do_PointsGeneralPolygons(Request& request) {
 namespace {
 
 // Sets *flag if text is the first word, clears it if one of the others; false if neither.
-bool choose(const std::string& text, std::string_view yes, std::initializer_list<std::string_view> no,
-            bool& flag) {
+bool choose(const std::string& text, std::string_view yes,
+            std::initializer_list<std::string_view> no, bool& flag) {
     flag = text == yes;
     return flag || std::find(no.begin(), no.end(), text) != no.end();
 }
@@ -179,7 +196,8 @@ bool choose(const std::string& text, std::string_view yes, std::initializer_list
 void State::do_Patch(Request& request) {
     Patches p;
     if (!choose(request.string(0), "bicubic", {"bilinear"}, p.bicubic)) {
-        error(base::Code::BadToken, request, "unknown type " + quoted(request.string(0)) + "; skipped");
+        error(base::Code::BadToken, request,
+              "unknown type " + quoted(request.string(0)) + "; skipped");
         return;
     }
     p.nu = p.nv = p.bicubic ? 4 : 2;
@@ -230,8 +248,12 @@ void State::subdivision_mesh(Request& request, bool hierarchical) {
     emit(std::move(m), request);
 }
 
-void State::do_SubdivisionMesh(Request& request) { subdivision_mesh(request, false); }
-void State::do_HierarchicalSubdivisionMesh(Request& request) { subdivision_mesh(request, true); }
+void State::do_SubdivisionMesh(Request& request) {
+    subdivision_mesh(request, false);
+}
+void State::do_HierarchicalSubdivisionMesh(Request& request) {
+    subdivision_mesh(request, true);
+}
 
 // --- points, curves, blobs ---
 
@@ -261,8 +283,8 @@ void State::do_Blobby(Request& request) {
 
 // --- procedurals and other shapes ---
 
-// An archive is expanded here: its RIB must be read in order anyway, since it may declare names. The two kinds that
-// run foreign code are kept for a renderer that may (ri.md 11.14).
+// An archive is expanded here: its RIB must be read in order anyway, since it may declare names.
+// The two kinds that run foreign code are kept for a renderer that may (ri.md 11.14).
 void State::do_Procedural(Request& request) {
     const std::string kind = request.string(0) == "ReadProgram" ? "RunProgram" : request.string(0);
     Procedural p;

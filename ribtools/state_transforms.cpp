@@ -80,8 +80,12 @@ Mat4 raster_from_screen(const Options& o, bool ndc) {
     const auto [l, r, b, t] = o.screen_window;
     const double viewport_aspect = o.xres * static_cast<double>(o.pixel_aspect) / o.yres;
     const double f = o.frame_aspect > 0 ? static_cast<double>(o.frame_aspect) : viewport_aspect;
-    const double w = ndc ? 1 : f >= viewport_aspect ? o.xres : std::round(o.xres * f / viewport_aspect);
-    const double h = ndc ? 1 : f >= viewport_aspect ? std::round(o.yres * viewport_aspect / f) : o.yres;
+    const double w = ndc                    ? 1
+                     : f >= viewport_aspect ? o.xres
+                                            : std::round(o.xres * f / viewport_aspect);
+    const double h = ndc                    ? 1
+                     : f >= viewport_aspect ? std::round(o.yres * viewport_aspect / f)
+                                            : o.yres;
     const auto width = static_cast<double>(r - l), height = static_cast<double>(t - b);
     Mat4 m;
     m.m[0][0] = w / width;
@@ -91,8 +95,8 @@ Mat4 raster_from_screen(const Options& o, bool ndc) {
     return m;
 }
 
-// A rotation is cut into steps this small, so that linear interpolation between the keys stays within 0.1 % of the
-// radius: 1 - cos(2.5 deg) = 0.00095.
+// A rotation is cut into steps this small, so that linear interpolation between the keys stays
+// within 0.1 % of the radius: 1 - cos(2.5 deg) = 0.00095.
 constexpr double max_step_deg = 5;
 constexpr int max_steps = 256;
 
@@ -126,11 +130,15 @@ std::optional<Transform> inverse(const Transform& t) {
 // The matrix of a transformation request; reported and nullopt when it has none.
 std::optional<Mat4> State::matrix_of(const Request& r) {
     switch (r.id) {
-    case RequestId::Identity: return Mat4();
+    case RequestId::Identity:
+        return Mat4();
     case RequestId::Transform:
-    case RequestId::ConcatTransform: return matrix_from(r.args[0].numbers);
-    case RequestId::Translate: return Mat4::translate({r.number(0), r.number(1), r.number(2)});
-    case RequestId::Scale: return Mat4::scale({r.number(0), r.number(1), r.number(2)});
+    case RequestId::ConcatTransform:
+        return matrix_from(r.args[0].numbers);
+    case RequestId::Translate:
+        return Mat4::translate({r.number(0), r.number(1), r.number(2)});
+    case RequestId::Scale:
+        return Mat4::scale({r.number(0), r.number(1), r.number(2)});
     case RequestId::Perspective:
         if (!(r.number(0) > 0 && r.number(0) < 180)) {
             error(base::Code::Range, r, "the angle must lie between 0 and 180; ignored");
@@ -146,14 +154,17 @@ std::optional<Mat4> State::matrix_of(const Request& r) {
         return Mat4::rotate(r.number(0), axis);
     }
     case RequestId::Skew: {
-        const std::optional<Mat4> m = Mat4::skew(r.number(0), {r.number(1), r.number(2), r.number(3)},
-                                                 {r.number(4), r.number(5), r.number(6)});
+        const std::optional<Mat4> m =
+            Mat4::skew(r.number(0), {r.number(1), r.number(2), r.number(3)},
+                       {r.number(4), r.number(5), r.number(6)});
         if (!m) {
-            error(base::Code::Math, r, "no such skew: parallel axes or too large an angle; ignored");
+            error(base::Code::Math, r,
+                  "no such skew: parallel axes or too large an angle; ignored");
         }
         return m;
     }
-    default: return std::nullopt;
+    default:
+        return std::nullopt;
     }
 }
 
@@ -175,13 +186,13 @@ void State::transform(const Request& request) {
     if (!m) {
         return;
     }
-    const bool replaces =
-        request.id == RequestId::Identity || request.id == RequestId::Transform;
+    const bool replaces = request.id == RequestId::Identity || request.id == RequestId::Transform;
     set_transform(replaces ? still_transform(*m) : transform_.value * still_transform(*m), request);
 }
 
-// One transformation with a sample per time. Rotations about one axis interpolate their angle, by way of extra keys;
-// everything else interpolates matrices, which for Translate and Scale is the same as interpolating the arguments.
+// One transformation with a sample per time. Rotations about one axis interpolate their angle, by
+// way of extra keys; everything else interpolates matrices, which for Translate and Scale is the
+// same as interpolating the arguments.
 void State::move_transform(std::span<Request> samples, std::span<const float> times) {
     Transform moving;
     moving.keys.clear();
@@ -212,8 +223,8 @@ void State::move_transform(std::span<Request> samples, std::span<const float> ti
     set_transform(replaces ? moving : transform_.value * moving, samples[0]);
 }
 
-// What maps the current system to camera space, as far as it is known, for handedness: inside an object the place of
-// its definition stands in for that of its instances, which replay the request.
+// What maps the current system to camera space, as far as it is known, for handedness: inside an
+// object the place of its definition stands in for that of its instances, which replay the request.
 Mat4 State::camera_from_current() const {
     const Mat4 current = transform_.value.still();
     const bool in_world = blocks_.inside(BlockKind::World);
@@ -221,7 +232,8 @@ Mat4 State::camera_from_current() const {
     return open_object_ ? outer * object_base_ * current : outer * current;
 }
 
-// A named system in the space transformations are relative to; nullopt if unknown or without an inverse.
+// A named system in the space transformations are relative to; nullopt if unknown or without an
+// inverse.
 std::optional<Transform> State::named_system(const std::string& name) const {
     if (const auto it = attributes_.value.scoped_systems.find(name);
         it != attributes_.value.scoped_systems.end()) {
@@ -254,14 +266,30 @@ std::optional<Transform> State::named_system(const std::string& name) const {
     return *from_camera * still_transform(*camera_from_named);
 }
 
-void State::do_Identity(Request& request) { transform(request); }
-void State::do_Transform(Request& request) { transform(request); }
-void State::do_ConcatTransform(Request& request) { transform(request); }
-void State::do_Perspective(Request& request) { transform(request); }
-void State::do_Translate(Request& request) { transform(request); }
-void State::do_Rotate(Request& request) { transform(request); }
-void State::do_Scale(Request& request) { transform(request); }
-void State::do_Skew(Request& request) { transform(request); }
+void State::do_Identity(Request& request) {
+    transform(request);
+}
+void State::do_Transform(Request& request) {
+    transform(request);
+}
+void State::do_ConcatTransform(Request& request) {
+    transform(request);
+}
+void State::do_Perspective(Request& request) {
+    transform(request);
+}
+void State::do_Translate(Request& request) {
+    transform(request);
+}
+void State::do_Rotate(Request& request) {
+    transform(request);
+}
+void State::do_Scale(Request& request) {
+    transform(request);
+}
+void State::do_Skew(Request& request) {
+    transform(request);
+}
 
 void State::do_CoordinateSystem(Request& request) {
     scene_->coordinate_systems[request.string(0)] = freeze_transform();

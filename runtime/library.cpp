@@ -238,7 +238,9 @@ const ShaderObject* ShaderLibrary::adopt(const sl_object& object) {
                            "built-in shader object " + why);
         return nullptr;
     }
-    return impl_->adopted.emplace_back(std::move(shader)).get();
+    const ShaderObject* adopted = impl_->adopted.emplace_back(std::move(shader)).get();
+    impl_->by_name.insert_or_assign(object.name, adopted);
+    return adopted;
 }
 
 } // namespace rt

@@ -100,7 +100,7 @@ public:
     const ShaderObject* load(const std::string& slo_path, base::SourcePos pos);
 
     // An object linked into the program (the built-in default surface; tests): checked like a
-    // loaded one, never closed. object must outlive the library.
+    // loaded one, never closed; find() gives it for its name. object must outlive the library.
     const ShaderObject* adopt(const sl_object& object);
 
     StringTable& strings() { return strings_; }

@@ -48,7 +48,7 @@ constexpr uint64_t bit(sl_variable id) {
 const sl_object& default_surface_object() {
     static constexpr sl_object object = {
         .fingerprint = SL_ABI_FINGERPRINT,
-        .name = "defaultsurface",
+        .name = "builtin_defaultsurface",
         .type = SL_SHADER_surface,
         .num_params = 0,
         .params = nullptr,

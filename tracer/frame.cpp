@@ -14,7 +14,9 @@
 #include "tracer/shader_set.h"
 #include "tracer/shading_classes.h"
 
+#include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <new>
 #include <vector>
@@ -151,6 +153,14 @@ std::vector<rib::Display> displays_of(const rib::Options& options, const RenderS
     return displays;
 }
 
+bool all_exist(const std::vector<rib::Display>& displays) {
+    return !displays.empty() &&
+           std::all_of(displays.begin(), displays.end(), [](const rib::Display& display) {
+               std::error_code error;
+               return std::filesystem::exists(display.name, error);
+           });
+}
+
 // Displays that ask for the same exposure share one exposed picture. The last one may take the
 // film's.
 class Developer {
@@ -211,6 +221,12 @@ FrameResult render_image(const rib::Scene& scene, const RenderSettings& settings
 
 FrameResult render_frame(const rib::Scene& scene, const RenderSettings& settings,
                          const FrameTools& tools) {
+    if (settings.keep_existing && all_exist(displays_of(scene.options, settings))) {
+        tools.diag.report(base::Severity::Info, base::Code::None, {},
+                          "frame " + std::to_string(scene.options.frame) +
+                              ": its pictures exist; skipped");
+        return FrameResult::Done;
+    }
     const Frame frame(scene, settings, tools);
     if (wants_stop(settings, tools.diag)) {
         return FrameResult::Interrupted;

@@ -22,6 +22,7 @@ struct RenderSettings {
     bool (*interrupted)() = nullptr;
     // The file of a scene without Display; "" = nothing is written.
     std::string default_output;
+    bool keep_existing = false; // frames whose files are all there already are skipped (-safe)
 };
 
 enum class FrameResult { Done, Interrupted, Failed /* the environment: exit code 3 */ };

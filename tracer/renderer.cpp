@@ -9,12 +9,22 @@ Renderer::Renderer(RendererConfig config, base::Diag& diag)
     : config_(std::move(config)), diag_(diag) {}
 Renderer::~Renderer() = default;
 
+// -shaders, then what the RIB says, then the installed shaders; each directory once.
 rt::ShaderLibrary& Renderer::library_for(const rib::Options& options) {
-    std::vector<std::string> path = config_.shader_path_first;
-    const auto from_rib = options.search_paths.find("shader");
-    const std::vector<std::string>& rest =
-        from_rib != options.search_paths.end() ? from_rib->second : config_.shaders.search_path;
-    path.insert(path.end(), rest.begin(), rest.end());
+    std::vector<std::string> path;
+    const auto add = [&path](const std::vector<std::string>& directories) {
+        for (const std::string& directory : directories) {
+            if (std::find(path.begin(), path.end(), directory) == path.end()) {
+                path.push_back(directory);
+            }
+        }
+    };
+    add(config_.shader_path_first);
+    if (const auto from_rib = options.search_paths.find("shader");
+        from_rib != options.search_paths.end()) {
+        add(from_rib->second);
+    }
+    add(config_.shaders.search_path);
     const auto it = std::find_if(libraries_.begin(), libraries_.end(),
                                  [&](const auto& item) { return item.first == path; });
     if (it != libraries_.end()) {

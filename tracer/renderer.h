@@ -15,9 +15,8 @@ namespace trace {
 
 struct RendererConfig {
     RenderSettings settings;
-    // How shaders are found and compiled. The search path of a frame is put in front of
-    // search_path: -shaders comes first, then what the RIB says (where @ stands for the installed
-    // shaders).
+    // How shaders are compiled and cached. Its search_path comes last: the standard shaders are
+    // found whatever path a RIB sets.
     rt::ShaderLibrary::Config shaders;
     std::vector<std::string> shader_path_first; // -shaders
 };
@@ -30,6 +29,9 @@ public:
     // False when reading should end: interrupted, or the environment failed.
     bool render(std::unique_ptr<rib::Scene> scene) override;
     bool make_texture(const rib::TextureRequest& request) override;
+
+    // The file of worlds without Display from now on.
+    void set_default_output(std::string file) { config_.settings.default_output = std::move(file); }
 
     [[nodiscard]] const Stats& stats() const { return stats_; }
     [[nodiscard]] Stats& stats() { return stats_; }

@@ -201,7 +201,7 @@ ShaderSet::ShaderSet(const ShaderSources& sources)
     : entries_(sources.scene.shaders.size()), tried_(sources.scene.shaders.size()) {
     const rib::Scene& scene = sources.scene;
     if (const rt::ShaderObject* fallback = sources.library.adopt(default_surface_object())) {
-        owned_.push_back(make_entry(sources, *fallback, fallback->object().name, {},
+        owned_.push_back(make_entry(sources, *fallback, "defaultsurface", {},
                                     sources.spaces.camera_from_world(), {}));
         default_surface_ = owned_.back().get();
     }

@@ -3,6 +3,7 @@
 
 #include "runtime/abi/sl_abi.h"
 
+#include <algorithm>
 #include <cinttypes>
 #include <cstdarg>
 #include <cstdio>
@@ -64,6 +65,14 @@ Stats& Stats::operator+=(const Stats& other) {
     world.bytes += other.world.bytes;
     world.build_seconds += other.world.build_seconds;
     return *this;
+}
+
+void Stats::subtract_frames_from_reading() {
+    double& reading = seconds[static_cast<std::size_t>(Phase::read)];
+    for (std::size_t i = 0; i < seconds.size(); ++i) {
+        reading -= i == static_cast<std::size_t>(Phase::read) ? 0 : seconds[i];
+    }
+    reading = std::max(reading, 0.0);
 }
 
 double Stats::mean_live_lanes() const {

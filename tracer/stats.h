@@ -49,8 +49,10 @@ struct Stats {
     geo::Stats world;
 
     Stats& operator+=(const Stats& other);
-    [[nodiscard]] double
-    mean_live_lanes() const; // of 8, whatever the width the shaders were compiled for
+    // Worlds render while their file is read: takes the time of all other phases off the reading.
+    void subtract_frames_from_reading();
+    // Of 8, whatever width the shaders were compiled for.
+    [[nodiscard]] double mean_live_lanes() const;
 };
 
 // Adds the life time of the object to a phase.

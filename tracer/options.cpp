@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracer/options.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <string_view>
+
+namespace trace {
+
+namespace {
+
+enum class Id {
+#define RENDER_OPTION(id, name, arguments, metavar, state, help) id,
+#include "tracer/options.def"
+#undef RENDER_OPTION
+};
+
+enum class State { NOW, LATER };
+
+struct Row {
+    Id id;
+    std::string_view name, arguments, metavar;
+    State state;
+    std::string_view help;
+};
+
+constexpr Row rows[] = {
+#define RENDER_OPTION(id, name, arguments, metavar, state, help)                                   \
+    {Id::id, name, arguments, metavar, State::state, help},
+#include "tracer/options.def"
+#undef RENDER_OPTION
+};
+
+std::optional<double> to_number(std::string_view text) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool whole = error == std::errc() && end == text.data() + text.size();
+    return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+std::optional<int> to_int(std::string_view text) {
+    int value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return error == std::errc() && end == text.data() + text.size() ? std::optional(value)
+                                                                    : std::nullopt;
+}
+
+// "3", "7-9"; a minus sign in front belongs to the number.
+std::optional<std::pair<int, int>> to_range(std::string_view text) {
+    const std::size_t dash = text.size() > 1 ? text.find('-', 1) : std::string_view::npos;
+    const std::optional<int> first = to_int(text.substr(0, dash));
+    const std::optional<int> last =
+        dash == std::string_view::npos ? first : to_int(text.substr(dash + 1));
+    return first && last ? std::optional(std::pair(*first, *last)) : std::nullopt;
+}
+
+std::optional<std::vector<std::pair<int, int>>> to_ranges(std::string_view text) {
+    std::vector<std::pair<int, int>> ranges;
+    while (true) {
+        const std::size_t comma = text.find(',');
+        const auto range = to_range(text.substr(0, comma));
+        if (!range) {
+            return std::nullopt;
+        }
+        ranges.push_back(*range);
+        if (comma == std::string_view::npos) {
+            return ranges;
+        }
+        text.remove_prefix(comma + 1);
+    }
+}
+
+bool fits(char letter, std::string_view text) {
+    switch (letter) {
+    case 'i':
+        return to_int(text).has_value();
+    case 'f':
+        return to_number(text).has_value();
+    case 'l':
+        return to_ranges(text).has_value();
+    default:
+        return true;
+    }
+}
+
+class Parser {
+public:
+    explicit Parser(std::span<const char* const> arguments) : arguments_(arguments) {}
+
+    ParsedOptions parse() {
+        while (at_ < arguments_.size() && result_.error.empty()) {
+            const std::string_view argument = arguments_[at_++];
+            if (argument == "--") {
+                result_.options.files.insert(result_.options.files.end(), arguments_.begin() + at(),
+                                             arguments_.end());
+                break;
+            }
+            if (argument.size() > 1 && argument.front() == '-') {
+                parse_switch(argument);
+            } else {
+                result_.options.files.emplace_back(argument);
+            }
+        }
+        return std::move(result_);
+    }
+
+private:
+    [[nodiscard]] std::ptrdiff_t at() const { return static_cast<std::ptrdiff_t>(at_); }
+
+    void parse_switch(std::string_view argument) {
+        const std::size_t equals =
+            argument.starts_with("--") ? argument.find('=') : std::string_view::npos;
+        const std::string_view name = argument.substr(0, equals);
+        const Row* row = std::find_if(std::begin(rows), std::end(rows),
+                                      [&](const Row& r) { return r.name == name; });
+        if (row == std::end(rows)) {
+            result_.error = "unknown switch " + std::string(name);
+            return;
+        }
+        if (equals != std::string_view::npos && row->arguments.size() != 1) {
+            result_.error = std::string(name) + " takes no value after '='";
+            return;
+        }
+        values_.clear();
+        if (equals != std::string_view::npos) {
+            values_.push_back(argument.substr(equals + 1));
+        }
+        if (take_arguments(*row)) {
+            apply(*row);
+        }
+    }
+
+    bool take_arguments(const Row& row) {
+        bool optional = false;
+        std::size_t needed = 0;
+        for (const char letter : row.arguments) {
+            if (letter == '?') {
+                optional = true;
+                continue;
+            }
+            if (needed++ == values_.size()) {
+                const bool there = at_ < arguments_.size();
+                if (optional && (!there || !fits(letter, arguments_[at_]))) {
+                    break;
+                }
+                if (!there) {
+                    return fail(row, "needs " + std::string(row.metavar));
+                }
+                values_.push_back(arguments_[at_++]);
+            }
+            if (!fits(letter, values_[needed - 1])) {
+                return fail(row, "needs " + std::string(row.metavar) + ", not '" +
+                                     std::string(values_[needed - 1]) + "'");
+            }
+        }
+        return true;
+    }
+
+    bool fail(const Row& row, const std::string& text) {
+        result_.error = std::string(row.name) + " " + text;
+        return false;
+    }
+
+    [[nodiscard]] int integer(std::size_t i) const { return to_int(values_[i]).value_or(0); }
+    [[nodiscard]] float number(std::size_t i) const {
+        return static_cast<float>(to_number(values_[i]).value_or(0));
+    }
+
+    std::optional<std::pair<int, int>> positive_pair(const Row& row) {
+        if (integer(0) <= 0 || integer(1) <= 0) {
+            fail(row, "needs two positive numbers");
+            return std::nullopt;
+        }
+        return std::pair(integer(0), integer(1));
+    }
+
+    void apply_frames(const Row& row) {
+        auto ranges = to_ranges(values_[0]).value_or(std::vector<std::pair<int, int>>());
+        if (values_.size() > 1) { // -frames A B
+            if (ranges.size() != 1 || ranges[0].first != ranges[0].second) {
+                fail(row, "takes a list, or the first and the last frame");
+                return;
+            }
+            ranges[0].second = integer(1);
+        }
+        auto& frames = result_.options.frames;
+        frames.insert(frames.end(), ranges.begin(), ranges.end());
+    }
+
+    void apply_progress(const Row& row) {
+        if (const auto mode = progress_mode(values_[0])) {
+            result_.options.progress = *mode;
+        } else {
+            fail(row, "needs " + std::string(row.metavar));
+        }
+    }
+
+    void apply(const Row& row) {
+        RenderOptions& o = result_.options;
+        if (row.state == State::LATER) {
+            o.not_yet.emplace_back(row.name);
+            return;
+        }
+        switch (row.id) {
+        case Id::threads:
+            o.num_threads = integer(0);
+            if (o.num_threads < 1) {
+                fail(row, "needs a positive number");
+            }
+            break;
+        case Id::res:
+            o.res = positive_pair(row);
+            break;
+        case Id::samples:
+            o.samples = positive_pair(row);
+            break;
+        case Id::crop:
+            o.crop = {number(0), number(1), number(2), number(3)};
+            break;
+        case Id::frames:
+            apply_frames(row);
+            break;
+        case Id::output:
+            o.output = values_[0];
+            break;
+        case Id::shaders:
+            for (std::string& directory : split_path(std::string(values_[0]))) {
+                o.shader_path.push_back(std::move(directory));
+            }
+            break;
+        case Id::silent:
+            o.silent = true;
+            break;
+        case Id::safe:
+            o.safe = true;
+            break;
+        case Id::progress90:
+            o.progress = ProgressMode::R90000;
+            break;
+        case Id::verbose:
+            o.verbose = true;
+            break;
+        case Id::option:
+            o.rib_texts.emplace_back(values_[0]);
+            break;
+        case Id::stats:
+        case Id::stats_bmrt:
+            o.stats = true;
+            break;
+        case Id::stats_json:
+            o.stats_json = values_[0];
+            break;
+        case Id::progress:
+            apply_progress(row);
+            break;
+        case Id::programs:
+            o.allow_programs = true;
+            break;
+        case Id::strict:
+            o.strict = true;
+            break;
+        case Id::help:
+            o.help = true;
+            break;
+        case Id::version:
+            o.version = true;
+            break;
+        case Id::var:
+        case Id::radio:
+        case Id::radio_error:
+        case Id::rsamples:
+        case Id::display:
+        case Id::position:
+        case Id::backend:
+            break; // LATER
+        }
+    }
+
+    std::span<const char* const> arguments_;
+    std::size_t at_ = 0;
+    std::vector<std::string_view> values_; // of the switch in work
+    ParsedOptions result_;
+};
+
+} // namespace
+
+ParsedOptions parse_options(std::span<const char* const> arguments) {
+    return Parser(arguments).parse();
+}
+
+std::string usage_text(const std::string& program) {
+    constexpr std::size_t column = 30;
+    std::string text = "usage: " + program + " [switches] [file.rib ... | -]\n";
+    for (const Row& row : rows) {
+        std::string line = "  " + std::string(row.name) + (row.metavar.empty() ? "" : " ") +
+                           std::string(row.metavar);
+        line.resize(std::max(column, line.size() + 1), ' ');
+        text += line + std::string(row.help) + (row.state == State::LATER ? " (not yet)\n" : "\n");
+    }
+    return text;
+}
+
+bool wants_frame(const RenderOptions& options, int frame) {
+    return options.frames.empty() ||
+           std::any_of(options.frames.begin(), options.frames.end(), [&](const auto& range) {
+               return frame >= range.first && frame <= range.second;
+           });
+}
+
+std::string frame_file_name(const std::string& pattern, int frame) {
+    const std::size_t begin = pattern.find('#');
+    if (begin == std::string::npos) {
+        return pattern;
+    }
+    const std::size_t end = std::min(pattern.find_first_not_of('#', begin), pattern.size());
+    std::string digits = std::to_string(frame);
+    if (digits.size() < end - begin) {
+        digits.insert(0, end - begin - digits.size(), '0');
+    }
+    return pattern.substr(0, begin) + digits + pattern.substr(end);
+}
+
+std::vector<std::string> split_path(const std::string& path) {
+    std::vector<std::string> directories;
+    for (std::size_t begin = 0; begin <= path.size();) {
+        const std::size_t end = std::min(path.find(':', begin), path.size());
+        if (end > begin) {
+            directories.push_back(path.substr(begin, end - begin));
+        }
+        begin = end + 1;
+    }
+    return directories;
+}
+
+} // namespace trace

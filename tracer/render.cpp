@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0
+// The program render (and rendrib): RIB files in, pictures out. Joins the reader, the compiler and
+// the renderer; what they do is in their libraries. Exit codes: 0 done, 1 errors in the input, 2
+// wrong usage, 3 the environment failed.
+#include "ribtools/reader.h"
+#include "runtime/base/diag.h"
+#include "runtime/base/file.h"
+#include "slc/driver.h"
+#include "tracer/display.h"
+#include "tracer/interrupt.h"
+#include "tracer/options.h"
+#include "tracer/renderer.h"
+#include "tracer/version.h"
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <unistd.h>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+enum ExitCode { exit_done = 0, exit_input = 1, exit_usage = 2, exit_environment = 3 };
+
+// --- where things are
+// -------------------------------------------------------------------------------------------
+
+// The directory this program lies in: installed files are found from there.
+fs::path program_directory() {
+    std::error_code error;
+    const fs::path program = fs::read_symlink("/proc/self/exe", error);
+    return error ? fs::path() : program.parent_path();
+}
+
+// Installed: dist/bin/render and dist/share/perigee/shaders; in the build tree shaders lie beside
+// this folder.
+std::vector<std::string> installed_shaders() {
+    std::vector<std::string> found;
+    const fs::path here = program_directory();
+    for (const fs::path& directory :
+         {here / ".." / "share" / "perigee" / "shaders", here / ".." / "shaders"}) {
+        std::error_code error;
+        if (!here.empty() && fs::is_directory(directory, error)) {
+            found.push_back(directory.lexically_normal().string());
+        }
+    }
+    return found;
+}
+
+std::vector<std::string> directories_from(const char* variable) {
+    const char* value = std::getenv(variable);
+    return value != nullptr ? trace::split_path(value) : std::vector<std::string>();
+}
+
+std::vector<std::string> default_shader_path() {
+    std::vector<std::string> path = directories_from("SHADERS");
+    path.insert(path.begin(), ".");
+    const std::vector<std::string> installed = installed_shaders();
+    path.insert(path.end(), installed.begin(), installed.end());
+    return path;
+}
+
+// --- configuration
+// ----------------------------------------------------------------------------------------------
+
+rib::Options rib_defaults(const trace::RenderOptions& options) {
+    rib::Options defaults;
+    if (options.res) {
+        std::tie(defaults.xres, defaults.yres) = *options.res;
+    }
+    if (options.samples) {
+        std::tie(defaults.xsamples, defaults.ysamples) = *options.samples;
+    }
+    return defaults;
+}
+
+void override_options(const trace::RenderOptions& options, rib::Options& rib_options) {
+    if (options.crop) {
+        rib_options.crop = *options.crop;
+    }
+    if (!options.output.empty()) {
+        const std::string mode =
+            rib_options.displays.empty() ? "rgba" : rib_options.displays.front().mode;
+        rib_options.displays = {trace::default_display(
+            trace::frame_file_name(options.output, rib_options.frame), mode)};
+    }
+}
+
+rib::Config reader_config(const trace::RenderOptions& options) {
+    rib::Config config;
+    config.default_paths["shader"] = default_shader_path();
+    config.default_paths["texture"] = directories_from("TEXTURES");
+    config.default_paths["archive"] = directories_from("ARCHIVES");
+    config.allow_programs = options.allow_programs;
+    config.defaults = rib_defaults(options);
+    config.override_options = [&options](rib::Options& o) { override_options(options, o); };
+    config.wants_world = [&options](const rib::Options& o) {
+        return !o.in_frame || trace::wants_frame(options, o.frame);
+    };
+    return config;
+}
+
+// Shaders found as source are compiled for this machine only.
+slc::ObjectOptions compile_options() {
+    slc::ObjectOptions options;
+    options.native_only = true;
+    return options;
+}
+
+trace::RendererConfig renderer_config(const trace::RenderOptions& options) {
+    trace::RendererConfig config;
+    config.settings.num_threads = options.num_threads;
+    config.settings.progress = options.progress;
+    config.settings.interrupted = trace::is_interrupted;
+    config.settings.keep_existing = options.safe;
+    config.shaders.search_path = installed_shaders();
+    config.shaders.cache_dir = rt::default_cache_dir();
+    config.shaders.compile = [](const std::string& sl_path, const std::string& slo_path,
+                                base::Diag& diag) {
+        return slc::compile_to_object(sl_path, slo_path, compile_options(), diag);
+    };
+    config.shaders.cache_key = [](const std::string& sl_path, base::Diag& diag) {
+        return slc::object_key(sl_path, compile_options(), diag);
+    };
+    config.shader_path_first = options.shader_path;
+    return config;
+}
+
+// The picture of a RIB that names none: its own name with .tif; that of standard input is ri.tif.
+std::string default_output(const std::string& file) {
+    return file == "-" ? "ri.tif" : fs::path(file).filename().replace_extension(".tif").string();
+}
+
+// --- the run
+// ----------------------------------------------------------------------------------------------------
+
+// RIB that comes before the files: ~/.rendribrc, then -option.
+rib::ReadStatus read_preludes(rib::Reader& reader, const trace::RenderOptions& options) {
+    if (const char* home = std::getenv("HOME")) {
+        const std::string path = std::string(home) + "/.rendribrc";
+        if (access(path.c_str(), R_OK) == 0) {
+            const rib::ReadStatus status = reader.read_file(path);
+            if (status != rib::ReadStatus::Ok) {
+                return status;
+            }
+        }
+    }
+    for (const std::string& text : options.rib_texts) {
+        const rib::ReadStatus status = reader.read_text(text, "-option");
+        if (status != rib::ReadStatus::Ok) {
+            return status;
+        }
+    }
+    return rib::ReadStatus::Ok;
+}
+
+rib::ReadStatus read_all(rib::Reader& reader, trace::Renderer& renderer,
+                         const trace::RenderOptions& options, base::Diag& diag) {
+    rib::ReadStatus worst = read_preludes(reader, options);
+    for (const std::string& file : options.files) {
+        if (worst == rib::ReadStatus::Stopped || trace::is_interrupted()) {
+            break;
+        }
+        if (options.verbose) {
+            diag.report(base::Severity::Info, base::Code::None, {}, "reading " + file);
+        }
+        renderer.set_default_output(default_output(file));
+        const rib::ReadStatus status = file == "-" ? reader.read_stdin() : reader.read_file(file);
+        worst = status == rib::ReadStatus::Ok ? worst : status;
+    }
+    return worst;
+}
+
+void report_later_switches(const trace::RenderOptions& options, base::Diag& diag) {
+    for (const std::string& name : options.not_yet) {
+        diag.report_once(name, base::Severity::Info, base::Code::Unimplement, {},
+                         "switch " + name + " has no effect yet");
+    }
+}
+
+// False if the statistics could not be written.
+bool report_stats(const trace::RenderOptions& options, const trace::Stats& stats,
+                  base::Diag& diag) {
+    if (options.stats) {
+        std::fputs(trace::stats_text(stats).c_str(), stderr);
+    }
+    if (options.stats_json.empty()) {
+        return true;
+    }
+    const std::string error =
+        base::write_file_atomically(options.stats_json, trace::stats_json(stats));
+    if (!error.empty()) {
+        diag.report(base::Severity::Error, base::Code::System, {}, "--stats-json: " + error);
+    }
+    return error.empty();
+}
+
+int exit_code(rib::ReadStatus status, const trace::Renderer& renderer,
+              const trace::RenderOptions& options, const base::Diag& diag) {
+    if (status == rib::ReadStatus::Environment || renderer.result() == trace::FrameResult::Failed) {
+        return exit_environment;
+    }
+    const bool strict_failure = options.strict && diag.count(base::Severity::Warning) > 0;
+    return diag.had_errors() || strict_failure ? exit_input : exit_done;
+}
+
+int run(const trace::RenderOptions& options) {
+    base::Diag diag;
+    if (options.silent) {
+        diag.set_threshold(base::Severity::Error);
+    }
+    report_later_switches(options, diag);
+    trace::catch_interrupts();
+    trace::Renderer renderer(renderer_config(options), diag);
+    rib::Reader reader(renderer, diag, reader_config(options));
+    rib::ReadStatus status = rib::ReadStatus::Ok;
+    {
+        // Frames render while the file is read: their time is taken off below.
+        const trace::PhaseTimer timer(renderer.stats(), trace::Phase::read);
+        status = read_all(reader, renderer, options, diag);
+    }
+    renderer.stats().subtract_frames_from_reading();
+    trace::finish_interrupt();
+    const bool stats_written = report_stats(options, renderer.stats(), diag);
+    return stats_written ? exit_code(status, renderer, options, diag) : exit_environment;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    const std::string program = argc > 0 ? fs::path(argv[0]).filename().string() : "render";
+    const std::vector<const char*> arguments(argv + (argc > 0 ? 1 : 0), argv + argc);
+    trace::ParsedOptions parsed = trace::parse_options(arguments);
+    if (parsed.error.empty() && parsed.options.files.empty()) {
+        if (isatty(STDIN_FILENO) != 0) {
+            parsed.error = "no RIB file";
+        }
+        parsed.options.files.emplace_back("-");
+    }
+    if (parsed.options.help) {
+        std::fputs(trace::usage_text(program).c_str(), stdout);
+        return exit_done;
+    }
+    if (parsed.options.version) {
+        std::printf("%s %s\n", trace::renderer_name, trace::renderer_version_text);
+        return exit_done;
+    }
+    if (!parsed.error.empty()) {
+        std::fprintf(stderr, "%s: %s\n%s", program.c_str(), parsed.error.c_str(),
+                     trace::usage_text(program).c_str());
+        return exit_usage;
+    }
+    return run(parsed.options);
+}

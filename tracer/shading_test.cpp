@@ -1,0 +1,417 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shading, lights, visibility and imagers against closed forms, on sheets and hand-written shaders
+// (test_world.h). Float results are compared to 2e-6 relative: a dozen float roundings.
+#include "runtime/base/parallel.h"
+#include "tracer/bucket.h"
+#include "tracer/filter.h"
+#include "tracer/imager.h"
+#include "tracer/lights.h"
+#include "tracer/test_world.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+namespace trace {
+namespace {
+
+constexpr float tolerance = 2e-6f;
+
+class Shading : public ::testing::Test {
+protected:
+    Shading() {
+        test::adopt_test_shaders(library);
+        scene.transforms.emplace_back();
+        scene.options.xres = scene.options.yres = 16;
+        scene.options.xsamples = scene.options.ysamples = 1;
+        scene.options.filter = "box";
+        scene.options.filter_width[0] = scene.options.filter_width[1] = 1;
+        scene.options.has_screen_window = true;
+        scene.options.screen_window = {-1, 1, -1, 1};
+        scene.options.hider_params.params.push_back(
+            integer("jitter", 0)); // samples at pixel centres
+    }
+
+    static rib::Param integer(const char* name, int value) {
+        rib::Param param;
+        param.name = name;
+        param.decl.type = rib::ParamType::Integer;
+        param.ints = {value};
+        return param;
+    }
+    static rib::Param floats(const char* name, rib::ParamType type, std::vector<float> values,
+                             rib::StorageClass storage = rib::StorageClass::Uniform) {
+        rib::Param param;
+        param.name = name;
+        param.decl = {storage, type, 1, false};
+        param.floats = std::move(values);
+        return param;
+    }
+    static rib::Param text(const char* name, const char* value) {
+        rib::Param param;
+        param.name = name;
+        param.decl.type = rib::ParamType::String;
+        param.strings = {value};
+        return param;
+    }
+
+    rib::ShaderId shader(const char* name, std::vector<rib::Param> params = {},
+                         const base::Mat4& world_from_shader = {}) {
+        rib::ShaderCall call;
+        call.name = name;
+        call.params.params = std::move(params);
+        scene.transforms.push_back({{{0, world_from_shader}}});
+        call.world_from_shader = static_cast<rib::TransformId>(scene.transforms.size() - 1);
+        scene.shaders.push_back(call);
+        return static_cast<rib::ShaderId>(scene.shaders.size() - 1);
+    }
+    rib::LightId light(rib::ShaderId id, std::uint32_t attributes = rib::none) {
+        rib::Light light;
+        light.shader = id;
+        light.attributes = attributes;
+        scene.lights.push_back(light);
+        return static_cast<rib::LightId>(scene.lights.size() - 1);
+    }
+    // Adds an attribute state and a sheet that has it.
+    rib::Attributes& sheet(float z, rib::ShaderId surface, std::vector<rib::LightId> lights = {}) {
+        rib::Attributes attributes;
+        attributes.surface = surface;
+        attributes.lights = std::move(lights);
+        scene.attributes.push_back(attributes);
+        test::Sheet s;
+        s.z = z;
+        s.attributes = static_cast<std::uint32_t>(scene.attributes.size() - 1);
+        sheets.push_back(s);
+        scene.primitives.emplace_back();
+        scene.primitives.back().attributes = s.attributes;
+        return scene.attributes.back();
+    }
+    static std::array<float, 3> grey(float value) { return {value, value, value}; }
+
+    Image render(int num_threads = 1, int bucket_px = 16) {
+        const Camera camera(scene, diag);
+        const Spaces spaces(scene, {camera.screen_from_camera(), camera.ndc_from_screen(),
+                                    camera.raster_from_screen()});
+        const ShaderSet shaders({scene, spaces, library, strings, diag});
+        const LightSet lights(scene, shaders, diag);
+        const ShadingClasses classes(scene, shaders, lights);
+        const test::SheetWorld world(scene, sheets);
+        const FrameContext frame{scene, spaces, strings, diag, &world, &shaders, &lights};
+        const Sampler sampler(sampler_settings(scene.options, diag));
+        const Filter filter(scene.options.filter, scene.options.filter_width[0],
+                            scene.options.filter_width[1], diag);
+        const FilterWeights weights(filter, sampler);
+        const auto film =
+            Film::create(camera.raster(), sampler, weights, {bucket_px, bucket_px}, diag);
+        std::vector<std::unique_ptr<BucketRenderer>> renderers(
+            static_cast<std::size_t>(num_threads));
+        counters = {};
+        base::parallel_for(film->num_buckets(), num_threads, [&](std::size_t bucket, int slot) {
+            auto& renderer = renderers[static_cast<std::size_t>(slot)];
+            if (!renderer) {
+                renderer = std::make_unique<BucketRenderer>(frame, camera, sampler, classes,
+                                                            visibility_options(scene.options));
+            }
+            renderer->render(bucket, *film);
+            return true;
+        });
+        for (const auto& renderer : renderers) {
+            if (renderer) {
+                counters += renderer->thread().counters;
+            }
+        }
+        if (const ShaderEntry* imager = shaders.get(scene.options.imager)) {
+            run_imager(frame, *imager, film->image(), num_threads, counters);
+        }
+        return std::move(film->image());
+    }
+
+    // Camera x, y of a pixel's centre.
+    static float x_of(std::size_t pixel) { return (static_cast<float>(pixel % 16) + 0.5f) / 8 - 1; }
+    static float y_of(std::size_t pixel) { return 1 - (static_cast<float>(pixel / 16) + 0.5f) / 8; }
+
+    template <class Expected> void expect_red(const Image& image, Expected expected) {
+        for (std::size_t i = 0; i < 256; ++i) {
+            const auto want = static_cast<double>(expected(x_of(i), y_of(i)));
+            EXPECT_NEAR(image.plane(Plane::R)[i], want,
+                        static_cast<double>(tolerance) * std::max(1.0, std::fabs(want)))
+                << "pixel " << i;
+        }
+    }
+
+    rib::Scene scene;
+    std::vector<test::Sheet> sheets;
+    base::Diag diag{std::tmpfile()};
+    rt::StringTable strings;
+    rt::ShaderLibrary library{{}, strings, diag};
+    Counters counters;
+};
+
+// --- lights
+// -----------------------------------------------------------------------------------------------------
+
+TEST_F(Shading, AmbientCountsWhereNothingIsDirectional) {
+    const auto a = light(shader("ambient", {floats("intensity", rib::ParamType::Float, {0.25f})}));
+    const auto b = light(shader("ambient", {floats("intensity", rib::ParamType::Float, {0.5f})}));
+    sheet(1, shader("lit"), {a, b});
+    expect_red(render(), [](float, float) { return 0.75f; });
+}
+
+TEST_F(Shading, PointLightFallsOffWithTheSquare) {
+    const auto id = light(shader("point", {floats("intensity", rib::ParamType::Float, {4}),
+                                           floats("from", rib::ParamType::Point, {0, 0, 1})}));
+    sheet(3, shader("lit"), {id});
+    // The light is 2 above the sheet: cos = 2/d, Cl = 4/d^2.
+    expect_red(render(), [](float x, float y) {
+        const double d2 = static_cast<double>(x * x + y * y) + 4;
+        return 4 / d2 * 2 / std::sqrt(d2);
+    });
+    EXPECT_GT(counters.get(Counter::light_reused), 0U)
+        << "the second loop asks for the same points";
+}
+
+TEST_F(Shading, DistantLightShinesAlongItsAxisAndNotFromBehind) {
+    const auto front = light(shader("distant", {floats("to", rib::ParamType::Point, {0, 3, 4})}));
+    const auto behind = light(shader("distant", {floats("to", rib::ParamType::Point, {0, 0, -1})}));
+    sheet(1, shader("lit"), {front, behind});
+    expect_red(render(), [](float, float) { return 0.8f; });
+}
+
+TEST_F(Shading, ConesEndAtTheirAngle) {
+    const float angle = 0.3f;
+    const auto id = light(shader("cone", {floats("angle", rib::ParamType::Float, {angle}),
+                                          floats("from", rib::ParamType::Point, {0, 0, 0}),
+                                          floats("to", rib::ParamType::Point, {0, 0, 5})}));
+    sheet(2, shader("lit"), {id});
+    expect_red(render(), [&](float x, float y) {
+        const double d2 = static_cast<double>(x * x + y * y) + 4;
+        const double cosine = 2 / std::sqrt(d2);
+        return cosine >= std::cos(static_cast<double>(angle)) ? cosine / d2 : 0;
+    });
+}
+
+TEST_F(Shading, LightParametersLieInTheSpaceOfTheirCall) {
+    // Shader space is shifted by (0,0,1): the default from (0,0,0) and a written from are both at z
+    // = 1.
+    const base::Mat4 shifted = base::Mat4::translate({0, 0, 1});
+    const auto by_default = light(shader("point", {}, shifted));
+    const auto by_value =
+        light(shader("point", {floats("from", rib::ParamType::Point, {0, 0, 0})}, shifted));
+    sheet(3, shader("lit"), {by_default, by_value});
+    expect_red(render(), [](float x, float y) {
+        const double d2 = static_cast<double>(x * x + y * y) + 4;
+        return 2 / d2 * 2 / std::sqrt(d2);
+    });
+}
+
+TEST_F(Shading, NonDiffuseLightsAreLeftOutAndListsAreObeyed) {
+    const auto on = light(shader("distant"));
+    const auto half =
+        light(shader("distant", {floats("__nondiffuse", rib::ParamType::Float, {0.75f})}));
+    light(shader("distant", {floats("intensity", rib::ParamType::Float, {100})})); // in no list
+    sheet(1, shader("lit"), {on, half});
+    expect_red(render(), [](float, float) { return 1.25f; });
+}
+
+TEST_F(Shading, CategoriesSelectLights) {
+    const auto key = light(shader("distant", {text("__category", "key, warm")}));
+    const auto fill = light(shader(
+        "distant", {floats("intensity", rib::ParamType::Float, {10}), text("__category", "fill")}));
+    const auto none = light(shader("distant", {floats("intensity", rib::ParamType::Float, {100})}));
+    const std::vector<rib::LightId> all = {key, fill, none};
+    sheet(1, shader("lit", {text("category", "warm")}), all);
+    expect_red(render(), [](float, float) { return 1.0f; });
+    scene.attributes[0].surface = shader("lit", {text("category", "-warm")});
+    expect_red(render(), [](float, float) { return 110.0f; });
+    scene.attributes[0].surface = shader("lit");
+    expect_red(render(), [](float, float) { return 111.0f; });
+    EXPECT_FALSE(in_category({}, "a"));
+    EXPECT_TRUE(in_category({}, "-a"));
+}
+
+TEST_F(Shading, ShadowsOnlyWhereTheAttributeSaysSo) {
+    rib::Attributes shadowed;
+    shadowed.user.edit()["light:shadows"] = text("shadows", "on");
+    scene.attributes.push_back(shadowed);
+    const std::vector<rib::Param> from = {floats("from", rib::ParamType::Point, {0, 0, 1})};
+    const auto with = light(shader("point", from), 0);
+    const auto without = light(shader("point", from));
+    sheet(3, shader("lit"), {with, without});
+    // An occluder between light and sheet that the camera does not see: half way, so its shadow is
+    // twice its size.
+    sheet(2, shader("flat"));
+    sheets.back().half_width = 0.25f;
+    scene.options.near_clip = 2.5f;
+    expect_red(render(), [](float x, float y) {
+        const double d2 = static_cast<double>(x * x + y * y) + 4;
+        const bool hidden = std::fabs(x) < 0.5f && std::fabs(y) < 0.5f;
+        return (hidden ? 1 : 2) / d2 * 2 / std::sqrt(d2);
+    });
+    EXPECT_EQ(counters.get(Counter::rays_shadow), 256U)
+        << "one ray per point, though the light was asked twice";
+}
+
+// --- visibility
+// -------------------------------------------------------------------------------------------------
+
+TEST_F(Shading, TransparentSheetsStackInDepthOrder) {
+    const auto flat = shader("flat");
+    sheet(1, flat);
+    sheet(3, flat);
+    sheet(2, flat);
+    const float color[] = {1, 0.5f, 0.25f}, opacity[] = {0.5f, 1, 0.25f};
+    for (std::size_t i = 0; i < 3; ++i) {
+        scene.attributes[i].color = grey(color[i]);
+        scene.attributes[i].opacity = grey(opacity[i]);
+    }
+    const Image image = render();
+    // .5*1 + .5*(.25*.25 + .75*1*.5)
+    expect_red(image, [](float, float) { return 0.5f + 0.5f * (0.0625f + 0.75f * 0.5f); });
+    EXPECT_NEAR(image.plane(Plane::A)[7], 1, 1e-6);
+    EXPECT_EQ(counters.get(Counter::rays_behind), 512U);
+    EXPECT_NEAR(image.plane(Plane::Z)[7], 3, 1e-5) << "depth of the first opaque surface";
+}
+
+TEST_F(Shading, MatteHidesAndShowsNothing) {
+    const auto flat = shader("flat");
+    sheet(1, flat).matte = 1;
+    sheets.back().half_width = 0.5f;
+    sheet(2, flat);
+    const Image image = render();
+    for (std::size_t i = 0; i < 256; ++i) {
+        const float want = std::fabs(x_of(i)) < 0.5f && std::fabs(y_of(i)) < 0.5f ? 0.0f : 1.0f;
+        EXPECT_EQ(image.plane(Plane::R)[i], want);
+        EXPECT_EQ(image.plane(Plane::A)[i], want);
+    }
+}
+
+TEST_F(Shading, UnassignedResultsAreTheAttributes) {
+    rib::Attributes& attributes = sheet(1, shader("unset"));
+    attributes.color = {0.1f, 0.2f, 0.3f};
+    attributes.opacity = {1, 1, 1};
+    const Image image = render();
+    EXPECT_EQ(image.plane(Plane::G)[100], 0.2f);
+    EXPECT_EQ(image.plane(Plane::A)[100], 1.0f);
+}
+
+TEST_F(Shading, WhatIsNoNumberNeverReachesThePicture) {
+    sheet(1, shader("bad"));
+    const Image image = render();
+    for (std::size_t i = 0; i < 256; ++i) {
+        EXPECT_EQ(image.plane(Plane::R)[i], x_of(i) > 0 ? 0.0f : 1.0f);
+    }
+    EXPECT_EQ(counters.get(Counter::bad_values), 128U);
+    EXPECT_EQ(diag.count(base::Severity::Warning), 1U) << "one message per shader";
+}
+
+TEST_F(Shading, MissingSurfacesGetTheDefaultOne) {
+    sheet(1, rib::none);
+    const Image image = render();
+    // Orthographic rays meet the sheet squarely: Ka + Kd.
+    EXPECT_NEAR(image.plane(Plane::R)[17], 1, 1e-6);
+    scene.attributes[0].surface = shader("nosuchshader");
+    EXPECT_NEAR(render().plane(Plane::R)[17], 1, 1e-6);
+    EXPECT_EQ(diag.count(base::Severity::Error), 1U);
+}
+
+TEST_F(Shading, AtmosphereFollowsTheSurface) {
+    rib::Attributes& attributes = sheet(4, shader("flat"));
+    attributes.color = grey(0.5f);
+    scene.attributes[0].atmosphere = shader("haze");
+    expect_red(render(), [](float, float) { return 0.5f * 0.6f + 0.4f; });
+    EXPECT_EQ(counters.get(Counter::points_volume), 256U);
+}
+
+// --- batches
+// ----------------------------------------------------------------------------------------------------
+
+TEST_F(Shading, PrimitiveVariablesReplaceParameters) {
+    const auto tint = shader("tint", {floats("tint", rib::ParamType::Color, {0.5f, 0.5f, 0.5f})});
+    sheet(1, tint);
+    const auto bind = [&](std::vector<rib::Param> variables) {
+        sheets[0].variables.clear();
+        scene.primitives[0].params.params = variables;
+        for (rib::Param& variable : variables) {
+            sheets[0].variables[variable.name] = variable;
+        }
+    };
+    expect_red(render(), [](float, float) { return 0.5f; });
+    bind({floats("tint", rib::ParamType::Color, {0.25f, 0, 0}, rib::StorageClass::Constant)});
+    expect_red(render(), [](float, float) { return 0.25f; });
+    bind({floats("scale", rib::ParamType::Float, {3}, rib::StorageClass::Varying)});
+    expect_red(render(), [](float x, float) { return 1.5f * x; });
+    bind({floats("tint", rib::ParamType::Color, {2, 0, 0}, rib::StorageClass::Varying)});
+    expect_red(render(), [](float x, float) { return 2 * x; });
+    EXPECT_EQ(counters.get(Counter::batches), 16U) << "one batch per value";
+    bind({floats("tint", rib::ParamType::Float, {2},
+                 rib::StorageClass::Constant)}); // another type: ignored
+    expect_red(render(), [](float, float) { return 0.5f; });
+}
+
+TEST_F(Shading, BatchesOfObjectSpaceHoldOneObject) {
+    const auto spaces = shader("spaces");
+    for (int i = 0; i < 2; ++i) {
+        sheet(static_cast<float>(i + 1), spaces);
+        sheets.back().camera_from_object = base::Mat4::translate({i == 0 ? 1.0 : -5.0, 0, 0});
+    }
+    sheets[0].half_width = 0.5f;
+    expect_red(render(), [](float x, float y) {
+        const bool near = std::fabs(x) < 0.5f && std::fabs(y) < 0.5f;
+        return near ? x - 1 : x + 5;
+    });
+    EXPECT_EQ(counters.get(Counter::batches), 2U);
+}
+
+TEST_F(Shading, EqualCallsShareBatches) {
+    // Two attribute states with different colours, one shader: one batch.
+    const auto flat = shader("flat");
+    sheet(1, flat).color = grey(0.25f);
+    sheets.back().half_width = 0.5f;
+    sheet(2, flat).color = grey(0.5f);
+    expect_red(render(), [](float x, float y) {
+        return std::fabs(x) < 0.5f && std::fabs(y) < 0.5f ? 0.25f : 0.5f;
+    });
+    EXPECT_EQ(counters.get(Counter::batches), 1U);
+    EXPECT_EQ(counters.get(Counter::lanes_live), 256U);
+}
+
+TEST_F(Shading, SameBytesWhateverThreadsAndBuckets) {
+    scene.options.xsamples = scene.options.ysamples = 3;
+    scene.options.hider_params.params.clear();
+    scene.options.filter = "gaussian";
+    scene.options.filter_width[0] = scene.options.filter_width[1] = 2;
+    const auto id = light(shader("point", {floats("intensity", rib::ParamType::Float, {4})}));
+    sheet(1, shader("flat")).opacity = grey(0.3f);
+    sheets.back().half_width = 0.7f;
+    sheet(3, shader("lit"), {id});
+    const Image reference = render();
+    for (const int threads : {1, 2, 5}) {
+        for (const int bucket_px : {16, 5}) {
+            const Image image = render(threads, bucket_px);
+            for (std::size_t p = 0; p < image.planes.size(); ++p) {
+                EXPECT_EQ(image.planes[p], reference.planes[p])
+                    << threads << " threads, buckets of " << bucket_px;
+            }
+        }
+    }
+}
+
+// --- imager
+// -----------------------------------------------------------------------------------------------------
+
+TEST_F(Shading, ImagersRunOnEveryPixel) {
+    sheet(1, shader("flat"));
+    sheets.back().half_width = 0.5f;
+    scene.options.imager = shader("invert");
+    const Image image = render();
+    expect_red(image, [](float x, float y) {
+        return std::fabs(x) < 0.5f && std::fabs(y) < 0.5f ? 0.0f : 1.0f;
+    });
+    EXPECT_EQ(image.plane(Plane::A)[0], 0.25f);
+    EXPECT_EQ(image.plane(Plane::A)[8 * 16 + 8], 1.25f);
+    EXPECT_EQ(image.plane(Plane::OR)[18], 2.5f) << "P is the raster position of the pixel centre";
+    EXPECT_EQ(image.plane(Plane::OG)[18], 1.5f);
+    EXPECT_EQ(counters.get(Counter::points_imager), 256U);
+}
+
+} // namespace
+} // namespace trace

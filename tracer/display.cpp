@@ -162,13 +162,13 @@ Quantizer quantizer_for(const ChannelRow& channel, bool only_depth, const rib::D
     if (channel.role == ChannelRole::Depth && !only_depth) {
         return q;
     }
+    const float dither = display.params.get_float("dither", static_cast<float>(q.dither));
     if (const rib::Param* p = display.params.find("quantize");
         p != nullptr && p->floats.size() >= 4) {
-        const auto number = [&](std::size_t i) { return static_cast<double>(p->floats[i]); };
-        q.zero = number(0), q.one = number(1), q.min = number(2), q.max = number(3);
+        q = quantizer({p->floats[1], p->floats[2], p->floats[3], dither});
+        q.zero = std::isfinite(p->floats[0]) ? static_cast<double>(p->floats[0]) : 0;
     }
-    q.dither =
-        static_cast<double>(display.params.get_float("dither", static_cast<float>(q.dither)));
+    q.dither = std::isfinite(dither) ? static_cast<double>(dither) : 0;
     return q;
 }
 

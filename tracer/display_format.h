@@ -6,6 +6,7 @@
 #include "tracer/display.h"
 #include "tracer/output_file.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -52,9 +53,24 @@ struct WriteOutcome {
     std::string note;
 };
 
-// Pixel row y (from 0) in the storage type, channels interleaved, native byte order. alpha_divides:
-// colors are divided by alpha before they are quantised, for formats with unassociated alpha.
-void quantise_row(const FilePicture& picture, int y, bool alpha_divides, std::span<std::byte> out);
+// Rows of pixels in the storage type, channels interleaved, native byte order.
+class RowWriter {
+public:
+    // alpha_divides: colors are divided by alpha first, for formats whose alpha is not
+    // premultiplied.
+    RowWriter(const FilePicture& picture, bool alpha_divides);
+    // Row y, from 0; out holds row_bytes().
+    void put_row(int y, std::span<std::byte> out) const;
+
+private:
+    [[nodiscard]] float value(const FileChannel& channel, std::size_t pixel) const;
+    template <class T> void put_levels(int y, std::span<std::byte> out) const;
+    void put_floats(int y, std::span<std::byte> out) const;
+
+    const FilePicture& picture_;
+    const FileChannel* alpha_;
+    std::vector<Levels> levels_; // per channel
+};
 
 [[nodiscard]] WriteOutcome write_tiff(const FilePicture& picture, OutputFile& file);
 [[nodiscard]] WriteOutcome write_png(const FilePicture& picture, OutputFile& file);

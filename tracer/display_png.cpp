@@ -18,12 +18,14 @@ namespace {
 struct Encoder {
     const FilePicture& picture;
     OutputFile& file;
+    RowWriter rows;
     std::vector<std::byte> row;
     char error[128] = {};
     png_structp png = nullptr;
     png_infop info = nullptr;
 
-    Encoder(const FilePicture& p, OutputFile& f) : picture(p), file(f), row(p.row_bytes()) {}
+    Encoder(const FilePicture& p, OutputFile& f)
+        : picture(p), file(f), rows(p, true), row(p.row_bytes()) {}
     ~Encoder() { png_destroy_write_struct(&png, &info); }
     Encoder(const Encoder&) = delete;
     Encoder& operator=(const Encoder&) = delete;
@@ -74,16 +76,16 @@ bool run(Encoder& e) {
         return false;
     }
     png_set_write_fn(e.png, &e, on_write, on_flush);
-    if (e.picture.compression == "none") {
-        png_set_compression_level(e.png, 0);
-    }
+    // Two filters and a lower level take a third of the time for a few per cent more bytes.
+    png_set_compression_level(e.png, e.picture.compression == "none" ? 0 : 4);
+    png_set_filter(e.png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB | PNG_FILTER_UP);
     set_header(e);
     png_write_info(e.png, e.info);
     if (storage_bytes(e.picture.storage) == 2) {
         png_set_swap(e.png);
     }
     for (int y = 0; y < e.picture.height(); ++y) {
-        quantise_row(e.picture, y, true, e.row);
+        e.rows.put_row(y, e.row);
         png_write_row(e.png, reinterpret_cast<png_bytep>(e.row.data()));
     }
     png_write_end(e.png, e.info);

@@ -182,9 +182,10 @@ WriteOutcome write_tiff(const FilePicture& picture, OutputFile& file) {
     set_layout(tiff.get(), picture);
     outcome.note = set_compression(tiff.get(), picture);
     set_place(tiff.get(), picture);
+    const RowWriter rows(picture, false);
     std::vector<std::byte> row(picture.row_bytes());
     for (int y = 0; y < picture.height() && outcome.ok; ++y) {
-        quantise_row(picture, y, false, row);
+        rows.put_row(y, row);
         outcome.ok = TIFFWriteScanline(tiff.get(), row.data(), static_cast<std::uint32_t>(y)) >= 0;
     }
     outcome.ok = outcome.ok && TIFFWriteDirectory(tiff.get()) != 0;

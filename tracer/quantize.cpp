@@ -89,30 +89,17 @@ Storage Quantizer::storage() const {
     return one == 0 ? Storage::Float : storage_for(std::min(min, max), std::max(min, max));
 }
 
-std::int64_t Quantizer::apply(float value, float noise) const {
-    const double v = std::isnan(value) ? 0 : static_cast<double>(value);
-    const StorageRange& r = range_for(std::min(min, max), std::max(min, max));
-    const double low = std::max(std::min(min, max), r.min);
-    const double high = std::min(std::max(min, max), r.max);
-    const double level = zero + v * (one - zero) + dither * static_cast<double>(noise);
-    return static_cast<std::int64_t>(std::floor(std::clamp(level, low, high) + 0.5));
+Levels::Levels(const Quantizer& q)
+    : zero_(q.zero), scale_(q.one - q.zero), dither_(q.dither), low_(std::min(q.min, q.max)),
+      high_(std::max(q.min, q.max)) {
+    const StorageRange& r = range_for(low_, high_);
+    low_ = std::max(low_, r.min);
+    high_ = std::min(high_, r.max);
 }
 
 Quantizer quantizer(const rib::Quantize& q) {
     const auto number = [](float x) { return std::isfinite(x) ? static_cast<double>(x) : 0.0; };
     return {0, number(q.one), number(q.min), number(q.max), number(q.dither)};
-}
-
-float dither_noise(int px, int py, int channel) {
-    // The finaliser of SplitMix64, a bijection of the pixel with full avalanche.
-    std::uint64_t h = (static_cast<std::uint64_t>(static_cast<std::uint32_t>(px)) << 32) |
-                      static_cast<std::uint32_t>(py);
-    h ^= static_cast<std::uint64_t>(static_cast<std::uint32_t>(channel) + 1U) *
-         0x9e3779b97f4a7c15ULL;
-    h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9ULL;
-    h = (h ^ (h >> 27)) * 0x94d049bb133111ebULL;
-    h ^= h >> 31;
-    return static_cast<float>(h >> 40) * 0x1p-23f - 1.0f;
 }
 
 } // namespace trace

@@ -33,13 +33,40 @@ struct Quantizer {
 
     // one = 0: Float.
     [[nodiscard]] Storage storage() const;
+};
+
+// A quantizer made ready for many values.
+class Levels {
+public:
+    explicit Levels(const Quantizer& quantizer);
     // round(zero + value (one - zero) + dither noise), clamped to min..max and to the storage type.
     // noise in [-1, 1); NaN counts as 0. Not for Float.
-    [[nodiscard]] std::int64_t apply(float value, float noise) const;
+    [[nodiscard]] std::int64_t operator()(float value, float noise) const {
+        const double v = value == value ? static_cast<double>(value) : 0;
+        const double level = zero_ + v * scale_ + dither_ * static_cast<double>(noise);
+        // Written so that a NaN (infinity times 0) ends at the lowest level.
+        const double clamped = level > low_ ? (level < high_ ? level : high_) : low_;
+        const double shifted = clamped + 0.5;
+        const auto truncated = static_cast<std::int64_t>(shifted);
+        return truncated - (shifted < static_cast<double>(truncated) ? 1 : 0); // floor
+    }
+
+private:
+    double zero_, scale_, dither_, low_, high_;
 };
 [[nodiscard]] Quantizer quantizer(const rib::Quantize& options);
 
 // Uniform in [-1, 1): a pure function of the pixel in the whole frame and the channel.
-[[nodiscard]] float dither_noise(int px, int py, int channel);
+[[nodiscard]] inline float dither_noise(int px, int py, int channel) {
+    // The finaliser of SplitMix64, a bijection of the pixel with full avalanche.
+    std::uint64_t h = (static_cast<std::uint64_t>(static_cast<std::uint32_t>(px)) << 32) |
+                      static_cast<std::uint32_t>(py);
+    h ^= static_cast<std::uint64_t>(static_cast<std::uint32_t>(channel) + 1U) *
+         0x9e3779b97f4a7c15ULL;
+    h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9ULL;
+    h = (h ^ (h >> 27)) * 0x94d049bb133111ebULL;
+    h ^= h >> 31;
+    return static_cast<float>(h >> 40) * 0x1p-23f - 1.0f;
+}
 
 } // namespace trace

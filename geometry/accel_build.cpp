@@ -111,7 +111,8 @@ private:
         const std::size_t added = num_parts(*g) - first;
         (form == TraceForm::Grids ? level_.grids : level_.triangles) += added;
         if (small) {
-            g->member_of.resize(first + added, static_cast<std::uint32_t>(g->members.size()));
+            g->member_of.insert(g->member_of.end(), added,
+                                static_cast<std::uint32_t>(g->members.size()));
         }
         g->members.push_back({item.shape, static_cast<std::uint32_t>(first), item.surface,
                               refine ? stored(item.object_from_trace) : nullptr, item.cull});

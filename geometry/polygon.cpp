@@ -319,7 +319,10 @@ void PolygonMesh::finish() {
 
 void PolygonMesh::tessellate(const TraceContext& context, TraceBuffer& out) {
     const std::uint32_t base = out.num_vertices();
-    out.xyz.reserve(out.xyz.size() + 3 * std::size_t(num_vertices_));
+    if (base == 0) { // a shared buffer must grow by doubling, not by each mesh
+        out.xyz.reserve(3 * std::size_t(num_vertices_));
+        out.triangles.reserve(plain_triangles_ && out.may_borrow ? 0 : 3 * num_parts());
+    }
     for (std::uint32_t i = 0; i < num_vertices_; ++i) {
         const V3d p = P_[i];
         out.add_vertex(usable(p) ? point(context.trace_from_object, p) : V3d());
@@ -331,7 +334,6 @@ void PolygonMesh::tessellate(const TraceContext& context, TraceBuffer& out) {
         return;
     }
     const auto count = static_cast<std::uint32_t>(num_parts());
-    out.triangles.reserve(out.triangles.size() + 3 * std::size_t(count));
     for (std::uint32_t i = 0; i < count; ++i) {
         for (const std::uint32_t k : triangle(i).corner) {
             out.triangles.push_back(base + vertex(k));

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The library face of the shader compiler up to optimised IR: SL file or text -> programs -> facts.
-// What comes out of compile() with ok() is verified IR: uniform variables are assigned only uniform values under
-// uniform control, operands have the types ir.h states. Messages go to the Diag, with source line and caret.
+// What comes out of compile() with ok() is verified IR: uniform variables are assigned only uniform
+// values under uniform control, operands have the types ir.h states. Messages go to the Diag, with
+// source line and caret.
 #pragma once
 
 #include "runtime/base/diag.h"
@@ -19,8 +20,8 @@ class Messages;
 struct CompileOptions {
     std::vector<std::string> include_dirs; // -I, in order
     std::vector<std::string> defines;      // -D, "NAME" or "NAME=value"
-    std::string preprocessor;              // C compiler to run as preprocessor; "" = cc, gcc or clang
-    bool optimise = true;                  // false: only the passes the emitter cannot do without
+    std::string preprocessor; // C compiler to run as preprocessor; "" = cc, gcc or clang
+    bool optimise = true;     // false: only the passes the emitter cannot do without
 };
 
 // All shaders of one source file.
@@ -30,26 +31,29 @@ struct Unit {
     [[nodiscard]] bool ok() const { return num_errors == 0; }
 };
 
-// Parse, check, lower and run the passes. `name` is what messages and IR call the text; its directory is where
-// quoted includes are looked for.
-[[nodiscard]] Unit compile_file(const std::string& path, const CompileOptions& options, base::Diag& diag);
-[[nodiscard]] Unit compile_text(std::string_view text, const std::string& name, const CompileOptions& options,
+// Parse, check, lower and run the passes. `name` is what messages and IR call the text; its
+// directory is where quoted includes are looked for.
+[[nodiscard]] Unit compile_file(const std::string& path, const CompileOptions& options,
                                 base::Diag& diag);
+[[nodiscard]] Unit compile_text(std::string_view text, const std::string& name,
+                                const CompileOptions& options, base::Diag& diag);
 
 // The same without the passes: IR as lowering leaves it, every local and temporary still varying.
-[[nodiscard]] Unit front_end_file(const std::string& path, const CompileOptions& options, base::Diag& diag);
-[[nodiscard]] Unit front_end_text(std::string_view text, const std::string& name, const CompileOptions& options,
+[[nodiscard]] Unit front_end_file(const std::string& path, const CompileOptions& options,
                                   base::Diag& diag);
+[[nodiscard]] Unit front_end_text(std::string_view text, const std::string& name,
+                                  const CompileOptions& options, base::Diag& diag);
 
-// The pass list (pipeline.cpp). With `messages`, warns about uniform variables that get varying values.
+// The pass list (pipeline.cpp). With `messages`, warns about uniform variables that get varying
+// values.
 void run_passes(Program& program, const CompileOptions& options, Messages* messages = nullptr);
 
 // Never changes the program. Exact after run_passes.
 [[nodiscard]] Facts analyse(const Program& program);
 
 // Text after the preprocessor (for cache keys); nullopt after messages.
-[[nodiscard]] std::optional<std::string> preprocess_file(const std::string& path, const CompileOptions& options,
-                                                         base::Diag& diag);
+[[nodiscard]] std::optional<std::string>
+preprocess_file(const std::string& path, const CompileOptions& options, base::Diag& diag);
 
 enum class DumpKind { Tokens, Ast, Ir, Facts };
 // nullopt: no such dump name, or the file has errors (already reported).

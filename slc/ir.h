@@ -56,9 +56,9 @@ struct Var {
                       // hides has another name
     Type type = Type::Float;
     Detail detail =
-        Detail::Varying; // Locals and Temps: result of the uniform/varying inference. A uniform
-                         // variable is assigned only uniform values; Locals only under uniform
-                         // control, Temps anywhere (they are read only where they were made).
+        Detail::Varying;  // Locals and Temps: result of the uniform/varying inference. A uniform
+                          // variable is assigned only uniform values; Locals only under uniform
+                          // control, Temps anywhere (they are read only where they were made).
     int array_length = 0; // 0: not an array
     VarKind kind = VarKind::Temp;
     int index = -1;

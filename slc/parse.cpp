@@ -379,8 +379,9 @@ void Parser::array_init(Variable& variable) {
                                       std::to_string(given) + " are given");
     } else if (symbol.array_length > given) {
         messages_.warning(open.loc, "array " + quoted(symbol.name) + " has " +
-                                        std::to_string(symbol.array_length) + " elements, but " +
-                                        std::to_string(given) + " are given; the rest is 0");
+                                        std::to_string(symbol.array_length) +
+                                        " elements, but only " + std::to_string(given) +
+                                        " given; the rest is 0");
     }
 }
 

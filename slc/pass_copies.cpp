@@ -1,10 +1,192 @@
 // SPDX-License-Identifier: Apache-2.0
+// Copies: a variable that still equals the one it was copied from is replaced by it; the copy then
+// dies.
+//   x = copy k1                   x = copy k1
+//   t1 = mul x Cs            ->   t1 = mul k1 Cs
+// Forward over the tree; what a body assigns is forgotten around it, so that no path is misjudged.
+// Needs: nothing. Provides: nothing. Spoils: nothing.
+#include "slc/ir_util.h"
 #include "slc/passes.h"
+
+#include <unordered_map>
+#include <unordered_set>
+
 namespace slc {
-bool pass_copies(Program&) {
-    return false;
+
+namespace {
+
+class CopyPropagation {
+public:
+    explicit CopyPropagation(Program& program) : program_(program) {}
+    bool run();
+
+private:
+    using Copies = std::unordered_map<VarId, VarId>;
+    using Vars = std::unordered_set<VarId>;
+    void block(Block& b, Copies& copies);
+    void statement(Stmt& s, Copies& copies);
+    void nested(Stmt& s, Copies& copies);
+    void loop(Stmt& s, Copies& copies);
+    void replace_reads(Stmt& s, const Copies& copies, const Vars& kept);
+    void replace(VarId& id, const Copies& copies, const Vars& kept);
+    void note(const Stmt& s, Copies& copies) const;
+    void written(const Stmt& s, Vars& out) const;
+    void written(const Block& b, Vars& out) const;
+    static void forget(const Vars& written, Copies& copies);
+    [[nodiscard]] const Var& var(VarId id) const {
+        return program_.vars[static_cast<std::size_t>(id)];
+    }
+
+    Program& program_;
+    VarId lights_[3] = {no_var, no_var, no_var}; // L, Cl, Ol
+    bool changed_ = false;
+};
+
+bool CopyPropagation::run() {
+    for (std::size_t i = 0; i < program_.vars.size(); ++i) {
+        const Var& v = program_.vars[i];
+        const bool is_light =
+            v.kind == VarKind::Global && v.index >= SL_VAR_L && v.index <= SL_VAR_Ol;
+        if (is_light) {
+            lights_[v.index - SL_VAR_L] = static_cast<VarId>(i);
+        }
+    }
+    for (Param& p : program_.params) {
+        Copies copies;
+        block(p.init, copies);
+    }
+    Copies copies;
+    block(program_.body, copies);
+    return changed_;
 }
-bool pass_fold(Program&) {
-    return false;
+
+void CopyPropagation::block(Block& b, Copies& copies) {
+    for (Stmt& s : b) {
+        statement(s, copies);
+    }
 }
+
+void CopyPropagation::statement(Stmt& s, Copies& copies) {
+    if (s.op == Op::Loop) {
+        loop(s, copies);
+    } else if (!s.bodies.empty()) {
+        nested(s, copies);
+    } else {
+        replace_reads(s, copies, {});
+        Vars gone;
+        written(s, gone);
+        forget(gone, copies);
+        note(s, copies);
+    }
+}
+
+// Bodies that run at most once or per light; each starts with what holds before.
+void CopyPropagation::nested(Stmt& s, Copies& copies) {
+    Vars inside;
+    written(s, inside);
+    replace_reads(s, copies, inside);
+    if (is_loop(s.op)) {
+        forget(inside, copies);
+    }
+    const Copies before = copies;
+    for (Block& b : s.bodies) {
+        Copies local = before;
+        if (s.op == Op::Illuminate || s.op == Op::Solar) { // L is set before the body
+            Vars light;
+            Stmt direction;
+            direction.op = s.op;
+            written(direction, light);
+            forget(light, local);
+        }
+        block(b, local);
+    }
+    forget(inside, copies);
+}
+
+void CopyPropagation::loop(Stmt& s, Copies& copies) {
+    Vars inside;
+    written(s, inside);
+    forget(inside, copies);
+    Copies test = copies;
+    block(s.bodies[0], test);
+    replace(s.args[0], test, {});
+    for (std::size_t i = 1; i < s.bodies.size(); ++i) {
+        Copies local = copies;
+        block(s.bodies[i], local);
+    }
+}
+
+void CopyPropagation::replace(VarId& id, const Copies& copies, const Vars& kept) {
+    const auto it = copies.find(id);
+    if (it != copies.end() && !kept.contains(it->second)) {
+        id = it->second;
+        changed_ = true;
+    }
+}
+
+// Arguments that the statement may change stay what they are.
+void CopyPropagation::replace_reads(Stmt& s, const Copies& copies, const Vars& kept) {
+    std::vector<bool> is_output(s.args.size(), false);
+    if (s.op == Op::Call) {
+        const BuiltinRow& row = builtin_of(s);
+        for (std::size_t i = 0; i < row.args.size(); ++i) {
+            is_output[arg_position(row, i)] = row.args[i].is_output;
+        }
+    }
+    for (std::size_t i = 0; i < s.args.size(); ++i) {
+        if (!is_output[i]) {
+            replace(s.args[i], copies, kept);
+        }
+    }
+    if (s.category != no_var) {
+        replace(s.category, copies, kept);
+    }
+}
+
+void CopyPropagation::note(const Stmt& s, Copies& copies) const {
+    if (s.op != Op::Copy || s.dst == s.args[0]) {
+        return;
+    }
+    const Var& to = var(s.dst);
+    const Var& from = var(s.args[0]);
+    if (to.array_length == 0 && from.array_length == 0 && same_class(to.type, from.type)) {
+        copies[s.dst] = s.args[0];
+    }
+}
+
+void CopyPropagation::written(const Stmt& s, Vars& out) const {
+    for_each_write(s, [&](VarId id, bool) { out.insert(id); });
+    if (s.op == Op::Illuminance || s.op == Op::Illuminate || s.op == Op::Solar) {
+        for (const VarId id : lights_) {
+            if (id != no_var) {
+                out.insert(id);
+            }
+        }
+    }
+    for (const Block& b : s.bodies) {
+        written(b, out);
+    }
+}
+
+void CopyPropagation::written(const Block& b, Vars& out) const {
+    for (const Stmt& s : b) {
+        written(s, out);
+    }
+}
+
+void CopyPropagation::forget(const Vars& written, Copies& copies) {
+    if (written.empty() || copies.empty()) {
+        return;
+    }
+    std::erase_if(copies, [&](const auto& c) {
+        return written.contains(c.first) || written.contains(c.second);
+    });
+}
+
+} // namespace
+
+bool pass_copies(Program& program) {
+    return CopyPropagation(program).run();
+}
+
 } // namespace slc

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+// The oracle: a slow, simple interpreter of IR in double precision. Points run in lock step with
+// masks, as the language defines it; lights, spaces and messages come from the caller. Nothing here
+// is shared with emitted code or its library.
+#pragma once
+
+#include "slc/interp_value.h"
+#include "slc/ir.h"
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace slc {
+
+struct LightSample {
+    Triple3 L{0, 0, 0}; // from the point to the light
+    Triple3 Cl{0, 0, 0};
+    Triple3 Ol{1, 1, 1};
+    double nondiffuse = 0, nonspecular = 0;
+};
+
+// The engine as the interpreter sees it. Every method has a default, so that a test overrides what
+// it needs.
+class InterpHost {
+public:
+    virtual ~InterpHost() = default;
+    [[nodiscard]] virtual int num_lights() { return 0; }
+    // False if the light does not reach P at this point. cos_angle <= -1: all directions (axis
+    // unused).
+    virtual bool light(int index, int point, const Triple3& P, const Triple3& axis,
+                       double cos_angle, const std::string& category, LightSample& sample);
+    virtual Triple3 ambient(int point, const Triple3& P);
+    // Row-vector matrix; false if a space is unknown (identity is used).
+    virtual bool space(const std::string& from, const std::string& to, int point, Matrix16& m);
+    // `function` is the name of the built-in ("surface", "attribute" ...). True if value was set.
+    virtual bool message(std::string_view function, const std::string& name, int point,
+                         Value& value);
+    virtual void print(const std::string& text);
+    virtual std::uint32_t seed(int point) { return static_cast<std::uint32_t>(point); }
+    virtual void depth_range(double& near_z, double& far_z);
+    virtual int raylevel() { return 0; }
+    virtual std::string shader_name(const std::string& type) { return type.empty() ? "test" : ""; }
+    // Neighbours of a point at u + du and v + dv, or -1: then derivatives are 0 and
+    // calculatenormal() gives N.
+    virtual void neighbours(int point, int& at_u, int& at_v);
+};
+
+class Interpreter {
+public:
+    Interpreter(const Program& program, InterpHost& host, int num_points);
+
+    // Values before the run; unset variables are zero.
+    void set_global(int variable, int point, const Value& value);
+    void set_param(std::string_view name, int point, const Value& value); // instead of its default
+    // Evaluates the defaults of parameters that were not set, then the body. False: stopped, it did
+    // not end.
+    bool run();
+
+    [[nodiscard]] const Value& global(int variable, int point) const;
+    [[nodiscard]] const Value& param(std::string_view name, int point) const;
+    [[nodiscard]] const Value& value(VarId id, int point) const { return at(id, point); }
+    // Light shaders: the point was in the cone of an illuminate or solar.
+    [[nodiscard]] bool lit(int point) const { return lit_[static_cast<std::size_t>(point)] != 0; }
+
+private:
+    using Mask = std::vector<char>;
+    struct Frame { // Loop, Illuminance, Gather or Scope around the current statement
+        bool is_loop = false;
+        Mask left;      // points that broke out or returned
+        Mask continued; // points that wait for the next round
+    };
+    [[nodiscard]] std::size_t find(std::string_view name) const;
+    void block(const Block& b, Mask& mask);
+    void statement(const Stmt& s, Mask& mask);
+    void element(const Stmt& s, int point);
+    void operation(const Stmt& s, int point);
+    void arithmetic(const Stmt& s, int point);
+    void matrix_arithmetic(const Stmt& s, int point);
+    void compare(const Stmt& s, int point);
+    void copy(const Stmt& s, int point);
+    void branch(const Stmt& s, Mask& mask);
+    void loop(const Stmt& s, Mask& mask);
+    void jump(const Stmt& s, Mask& mask);
+    void scope(const Stmt& s, Mask& mask);
+    void illuminance(const Stmt& s, Mask& mask);
+    void light_body(const Stmt& s, int light, const Mask& mask, Mask& running);
+    void illuminate(const Stmt& s, Mask& mask);
+    bool emit_direction(const Stmt& s, int point, Triple3& L);
+    void gather(const Stmt& s, Mask& mask);
+
+    // interp_call.cpp
+    void call(const Stmt& s, const Mask& mask);
+    void call_at(const Stmt& s, const Mask& mask, int point);
+    bool lighting(const Stmt& s, int point, Value& result);
+    bool state(const Stmt& s, int point, std::vector<Value>& args, Value& result);
+    bool spaces(const Stmt& s, int point, Value& result);
+    bool area(const Stmt& s, const Mask& mask, int point, Value& result);
+    bool text(const Stmt& s, int point, Value& result);
+    void random(int point, Value& result);
+    void fallback(const Stmt& s, int point, Value& result);
+    Triple3 illuminate_sum(const Stmt& s, int point);
+    Value difference(VarId id, int point, int neighbour) const;
+
+    Value& at(VarId id, int point);
+    [[nodiscard]] const Value& at(VarId id, int point) const;
+    [[nodiscard]] Triple3 global3(int variable, int point) const;
+    [[nodiscard]] const Var& var(VarId id) const {
+        return program_.vars[static_cast<std::size_t>(id)];
+    }
+
+    static constexpr std::size_t max_steps = 20'000'000; // statements times points
+
+    const Program& program_;
+    InterpHost& host_;
+    int num_points_;
+    std::vector<std::vector<Value>> values_;   // by variable, by point
+    std::vector<std::vector<Value>> globals_;  // by sl_variable, by point
+    std::vector<char> bound_;                  // parameters that were set
+    std::vector<std::uint32_t> random_counts_; // by point
+    std::uint32_t random_uniform_ = 0;
+    Mask lit_;
+    std::vector<Frame> frames_;
+    std::size_t steps_ = 0;
+};
+
+} // namespace slc

@@ -85,6 +85,8 @@ public:
     // when the batch is done. Answer request() of those, then call run() again.
     std::uint32_t run(const ShadeContext& context);
     [[nodiscard]] std::uint32_t num_packets() const { return (batch_.count + lanes_ - 1) / lanes_; }
+    // What the shader is handed; services and engine are those of the last run().
+    [[nodiscard]] const sl_batch& raw() const { return batch_; }
     // The pending request of a packet, or null if it is finished.
     [[nodiscard]] sl_request* request(std::uint32_t packet);
 

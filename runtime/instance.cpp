@@ -129,8 +129,8 @@ const float* ShaderInstance::uniform_floats(int param) const {
     return reinterpret_cast<const float*>(value_slot(object().params[param]));
 }
 
-sl_string ShaderInstance::uniform_string(int param) const {
-    return *reinterpret_cast<const sl_string*>(value_slot(object().params[param]));
+const sl_string* ShaderInstance::uniform_strings(int param) const {
+    return reinterpret_cast<const sl_string*>(value_slot(object().params[param]));
 }
 
 } // namespace rt

@@ -2,8 +2,11 @@
 // Finding shaders: a name becomes a file on the search path, a compiled object or an .sl compiled
 // into the user's cache, and is remembered whether it was found or not. One lock for all of it:
 // shaders are looked up while a scene is read, not while it is shaded.
+#include "runtime/base/file.h"
+#include "runtime/base/seal.h"
 #include "runtime/base/sha256.h"
 #include "runtime/shader.h"
+#include "sl_fingerprint.h"
 
 #include <cstdlib>
 #include <filesystem>
@@ -142,12 +145,27 @@ struct ShaderLibrary::Impl {
         return object;
     }
 
+    // Objects may carry another renderer's suffix (slc -o x.slc); that renderer's own objects are
+    // no concern of ours.
+    static std::string object_at(const std::string& stem) {
+        if (is_file(stem + ".slo")) {
+            return stem + ".slo";
+        }
+        for (const char* suffix : {".slc", ".slx"}) {
+            const auto bytes = base::read_file(stem + suffix);
+            if (bytes && base::check_seal(*bytes, SL_ABI_FINGERPRINT) != base::SealState::Missing) {
+                return stem + suffix;
+            }
+        }
+        return "";
+    }
+
     // In one directory (or at a path without suffix): the object, else its source.
     const ShaderObject* open_at(const std::string& stem, base::SourcePos pos, bool& exists) {
-        const std::string object_path = stem + ".slo";
+        const std::string object_path = object_at(stem);
         const std::string source_path = stem + ".sl";
         const bool has_source = is_file(source_path);
-        if (is_file(object_path)) {
+        if (!object_path.empty()) {
             exists = true;
             std::string why;
             if (const ShaderObject* object = open(object_path, why)) {
@@ -201,14 +219,9 @@ ShaderLibrary::~ShaderLibrary() = default;
 
 const ShaderObject* ShaderLibrary::find(std::string_view name, sl_shader_type wanted,
                                         base::SourcePos pos) {
-    const std::string stem = strip_suffix(name);
-    const std::lock_guard lock(impl_->mutex);
-    auto it = impl_->by_name.find(stem);
-    if (it == impl_->by_name.end()) {
-        it = impl_->by_name.emplace(stem, impl_->search(stem, pos)).first;
-    }
-    const ShaderObject* found = it->second;
+    const ShaderObject* found = find_any(name, pos);
     if (found && found->object().type != wanted) {
+        const std::string stem = strip_suffix(name);
         impl_->diag.report_once("shader type " + stem + shader_type_text(wanted),
                                 base::Severity::Error, base::Code::NoShader, pos,
                                 "shader \"" + stem + "\" is a " +
@@ -217,6 +230,16 @@ const ShaderObject* ShaderLibrary::find(std::string_view name, sl_shader_type wa
         return nullptr;
     }
     return found;
+}
+
+const ShaderObject* ShaderLibrary::find_any(std::string_view name, base::SourcePos pos) {
+    const std::string stem = strip_suffix(name);
+    const std::lock_guard lock(impl_->mutex);
+    auto it = impl_->by_name.find(stem);
+    if (it == impl_->by_name.end()) {
+        it = impl_->by_name.emplace(stem, impl_->search(stem, pos)).first;
+    }
+    return it->second;
 }
 
 const ShaderObject* ShaderLibrary::load(const std::string& slo_path, base::SourcePos pos) {

@@ -95,6 +95,9 @@ public:
     // type than wanted.
     const ShaderObject* find(std::string_view name, sl_shader_type wanted, base::SourcePos pos);
 
+    // The same for a shader of any type.
+    const ShaderObject* find_any(std::string_view name, base::SourcePos pos);
+
     // Loads one object file; nullptr and a message on failure. Checks the fingerprint before
     // anything else.
     const ShaderObject* load(const std::string& slo_path, base::SourcePos pos);
@@ -137,7 +140,8 @@ public:
     [[nodiscard]] std::span<const std::byte> params() const;
     // Uniform value of a parameter (message passing, __category, ...): floats or an sl_string.
     [[nodiscard]] const float* uniform_floats(int param) const;
-    [[nodiscard]] sl_string uniform_string(int param) const;
+    [[nodiscard]] sl_string uniform_string(int param) const { return *uniform_strings(param); }
+    [[nodiscard]] const sl_string* uniform_strings(int param) const; // all elements of an array
 
 private:
     [[nodiscard]] std::byte* value_slot(const sl_param& param);

@@ -191,7 +191,7 @@ void CFile::descriptor() {
         out_.open("static const sl_param sl_params[] = {");
         for (std::size_t i = 0; i < program_.params.size(); ++i) {
             const Var& v = var(program_.params[i].var);
-            out_.line("{" + quoted(v.name) + ", SL_TYPE_" + std::string(type_name(v.type)) +
+            out_.line("{" + c_string(v.name) + ", SL_TYPE_" + std::string(type_name(v.type)) +
                       ", SL_DETAIL_" + std::string(detail_name(v.detail)) + ", " +
                       std::to_string(v.array_length) + ", " + (v.is_output ? "1" : "0") + ", " +
                       std::to_string(layout.offsets[i]) + "},");
@@ -201,7 +201,7 @@ void CFile::descriptor() {
     if (!strings_.texts().empty()) {
         out_.open("static const char *const sl_strings[] = {");
         for (const std::string& text : strings_.texts()) {
-            out_.line(quoted(text) + ",");
+            out_.line(c_string(text) + ",");
         }
         out_.close("};");
     }
@@ -218,8 +218,8 @@ void CFile::descriptor() {
     out_.line("static const sl_variant *const sl_variants[] = {" + variants + "};");
     ir_text();
     out_.open("__attribute__((visibility(\"default\"))) const sl_object sl_shader_object = {");
-    out_.line(".fingerprint = " + quoted(SL_ABI_FINGERPRINT) + ",");
-    out_.line(".name = " + quoted(program_.name) + ",");
+    out_.line(".fingerprint = " + c_string(SL_ABI_FINGERPRINT) + ",");
+    out_.line(".name = " + c_string(program_.name) + ",");
     out_.line(".type = SL_SHADER_" + std::string(shader_type_name(program_.shader_type)) + ",");
     if (!program_.params.empty()) {
         out_.line(".num_params = " + std::to_string(program_.params.size()) + ",");
@@ -237,7 +237,7 @@ void CFile::descriptor() {
     out_.line(".num_variants = " + std::to_string(options_.variants.size()) + ",");
     out_.line(".variants = sl_variants,");
     out_.line(".ir = " + std::string(options_.ir_text.empty() ? "\"\"" : "sl_ir") + ",");
-    out_.line(".source = " + quoted(options_.source) + ",");
+    out_.line(".source = " + c_string(options_.source) + ",");
     out_.close("};");
 }
 
@@ -249,7 +249,7 @@ void CFile::ir_text() {
     const std::string_view text = options_.ir_text;
     for (std::size_t at = 0; at < text.size();) {
         const std::size_t end = std::min(text.find('\n', at), text.size() - 1) + 1;
-        out_.line(quoted(text.substr(at, end - at)));
+        out_.line(c_string(text.substr(at, end - at)));
         at = end;
     }
     out_.line(";");

@@ -85,7 +85,7 @@ private:
 
 // What a variable is called in emitted text: the SL name wherever C allows it.
 [[nodiscard]] std::vector<std::string> c_names(const Program& program);
-[[nodiscard]] std::string quoted(std::string_view text); // a C string literal
+[[nodiscard]] std::string c_string(std::string_view text); // a C string literal
 [[nodiscard]] std::string float_literal(float value);
 
 class Emitter {

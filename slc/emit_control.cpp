@@ -23,7 +23,7 @@ void Emitter::note_place(const Loc& loc) {
     place_line_ = loc.line;
     place_file_ = loc.file;
     const std::string file = loc.file < program_.files.size() ? program_.files[loc.file] : "?";
-    out_.raw("#line " + std::to_string(loc.line) + " " + quoted(file));
+    out_.raw("#line " + std::to_string(loc.line) + " " + c_string(file));
 }
 
 void Emitter::place_label(const std::string& label) {

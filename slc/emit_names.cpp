@@ -72,7 +72,7 @@ std::vector<std::string> c_names(const Program& program) {
     return names;
 }
 
-std::string quoted(std::string_view text) {
+std::string c_string(std::string_view text) {
     static constexpr char digits[] = "01234567";
     std::string out = "\"";
     for (const char c : text) {

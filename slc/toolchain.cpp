@@ -5,6 +5,7 @@
 #include "runtime/base/seal.h"
 #include "sl_fingerprint.h"
 #include "slc/process.h"
+#include "slc_build_id.h"
 
 #include <cstdlib>
 #include <filesystem>
@@ -220,13 +221,7 @@ std::string toolchain_identity(const Toolchain& tools, const CompileFlags& flags
     std::error_code error;
     const fs::path real = fs::canonical(tools.compiler, error);
     std::string text = file_identity(error ? tools.compiler : real.string());
-    text += "\n" + file_identity(archive(tools, 8)) + "\n" + file_identity(archive(tools, 4));
-    for (const std::string& dir : split(tools.include_dir, ':')) {
-        for (const char* header : {"sl_shader.h", "sl_lanes.h", "sl_inline.h", "sl_packet.h",
-                                   "sl_calls.h", "sl_lights.h", "sl_abi.h"}) {
-            text += "\n" + file_identity(dir + "/" + header);
-        }
-    }
+    text += "\n" SLC_BUILD_ID;
     for (const std::string& flag : code_flags(flags)) {
         text += "\n" + flag;
     }

@@ -111,32 +111,42 @@ F FN(atan2)(F y, F x) {
     return SEL(number, r, x + y);
 }
 
-SL_INLINE F FN(asin_small_)(F r, F z) { /* z = r^2 <= 1/4 */
-    const F p = 0.0454766601f + z * (0.0241481289f + z * 0.0422197841f);
-    return r + r * z * (0.166667536f + z * (0.0749524906f + z * p));
+SL_INLINE F FN(head_)(F x) { /* upper 12 bits: products of two heads are exact */
+    return FLOAT(BITS(x) & (int)0xfffff000);
 }
 
-/* asin of |x|, for acos too: above 1/2 the result is pi/2 - 2 r, with r in *half. */
-SL_INLINE F FN(asin_parts_)(F x, I* above) {
+/* asin of |x| in two parts, head + tail, for acos too. Above 1/2 they give r with asin |x| = pi/2 - 2 r: there
+ * r = asin sqrt(z), and the root's own rounding goes into the tail. */
+SL_INLINE F FN(asin_parts_)(F x, F *tail, I *above) {
     const F one = K(1);
     const F a0 = FN(abs)(x), a = SEL(LT(one, a0), one, a0);
     *above = LT(K(0.5f), a);
     const F z = SEL(*above, 0.5f * (1.0f - a), a * a);
-    return FN(asin_small_)(SEL(*above, FN(root_f)(z), a), z);
+    const F w = SEL(*above, FN(root_f)(z), a);
+    const F p = 0.0454766601f + z * (0.0241481289f + z * 0.0422197841f);
+    const F q = w * z * (0.166667536f + z * (0.0749524906f + z * p));
+    const F head = SEL(*above, FN(head_)(w), w), sum = w + head;
+    const F lost = (z - head * head) / SEL(EQ(sum, K(0)), one, sum);
+    *tail = SEL(*above, q + lost, q);
+    return head;
 }
 
 F FN(asin)(F x) {
     I above;
-    const F r = FN(asin_parts_)(x, &above);
-    const F v = SEL(above, SL_HALF_PI - (2.0f * r + 4.37113883e-08f), r);
+    F tail;
+    const F head = FN(asin_parts_)(x, &tail, &above);
+    const F outer = (SL_HALF_PI - 2.0f * head) - (2.0f * tail + 4.37113883e-08f);
+    const F v = SEL(above, outer, head + tail);
     return FLOAT(BITS(v) ^ (BITS(x) & (int)0x80000000));
 }
 
 F FN(acos)(F x) {
     I above;
-    const F r = FN(asin_parts_)(x, &above);
+    F tail;
+    const F head = FN(asin_parts_)(x, &tail, &above), r = head + tail;
     const I negative = LT(x, K(0));
-    const F outer = SEL(negative, SL_PI - (2.0f * r + 8.74227766e-08f), 2.0f * r);
+    const F behind = (SL_PI - 2.0f * head) - (2.0f * tail + 8.74227766e-08f);
+    const F outer = SEL(negative, behind, 2.0f * r);
     const F inner = SL_HALF_PI - (SEL(negative, -r, r) + 4.37113883e-08f);
     return SEL(above, outer, inner);
 }
@@ -206,10 +216,6 @@ F FN(log_base)(F x, F base) {
 /* --- power
  * --------------------------------------------------------------------------------------------------------
  */
-
-SL_INLINE F FN(head_)(F x) { /* upper 12 bits: products of two heads are exact */
-    return FLOAT(BITS(x) & (int)0xfffff000);
-}
 
 /* log2 of x > 0 as a sum, head of 12 bits and tail, with about 2^-30 relative error.
  * With s = (m-1)/(m+1): log m = 2 s + s^3 Q(s^2); only s itself needs two floats. */

@@ -32,7 +32,7 @@
 #define S      sls
 #define FN(n)  slv_##n
 #define OUT(n) SL_SYMBOL(slv_##n)
-#define CALL   const sl_call *call, sli mask __attribute__((unused))
+#define CALL   const sl_call *call __attribute__((unused)), sli mask __attribute__((unused))
 #define PASS   call, mask
 #endif
 #undef SL_WORLD

@@ -213,7 +213,7 @@ V FN(refract)(V i, V n, F eta) {
     return FN(select_3)(reflected, FN(f_to_3)(K(0)), t);
 }
 
-/* Unpolarised reflectance with c = |I.N|, g^2 = 1/eta^2 - 1 + c^2 [CookTorrance82]; Kt = 1 - Kr. At
+/* Unpolarised reflectance with c = |I.N|, g^2 = 1/eta^2 - 1 + c^2 [Cook82]; Kt = 1 - Kr. At
  * c = 0 all is reflected; g = c = 0 cannot be divided and is the same limit. */
 void FN(fresnel)(V i, V n, F eta, F* Kr, F* Kt) {
     const F one = K(1);

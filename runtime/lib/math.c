@@ -5,7 +5,7 @@
 
 /* x as an angle beyond the reach of math_body.h's reduction: quadrant and remainder in [-pi/4,
  * pi/4]. 2/pi is multiplied as an integer, keeping only the bits that decide the fraction of a full
- * turn [PayneHanek83]. x = M 2^E: the wanted 96 bits of 2/pi start E-2 places after the binary
+ * turn [Payne83]. x = M 2^E: the wanted 96 bits of 2/pi start E-2 places after the binary
  * point. */
 static float huge_remainder(float x, int* quadrant) {
     static const uint32_t two_over_pi[9] = {0,          0xa2f9836e, 0x4e441529,

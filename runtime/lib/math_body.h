@@ -10,7 +10,7 @@
  */
 
 /* x = quadrant pi/2 + r, |r| <= pi/4. pi/2 in four parts of 12 bits: for |x| < 6400 the products
- * with the quadrant and the first two differences are exact [CodyWaite80]; the bits of x + 1.5 2^23
+ * with the quadrant and the first two differences are exact [Cody80]; the bits of x + 1.5 2^23
  * hold the rounded integer. */
 SL_INLINE F FN(reduce_angle_)(F x, I* quadrant) {
     const I huge = ~LE(FN(abs)(x), K(6400));

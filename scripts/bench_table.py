@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Gathers the results of the benchmarks into one table.
 
-In: meson-logs/benchmarklog.json; a benchmark prints one JSON object a line, as docs/benchmarks.md describes.
-Out: a Markdown table; with --write it replaces the one in docs/benchmarks.md. Exit status 1 if a benchmark failed
+In: meson-logs/benchmarklog.json; a benchmark prints one JSON object a line, as docs/benchmarks.md describes; other
+lines are kept as they are. Out: a Markdown table and these texts; with --write it replaces the one in docs/benchmarks.md. Exit status 1 if a benchmark failed
 or missed its limit.
 """
 
@@ -17,14 +17,28 @@ ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 
 
 def results(path):
-    """(benchmark, parsed line) for every result; ("...", None) for a benchmark that failed."""
+    """(rows, texts, failures): JSON results, what other benchmarks printed, names of those that failed."""
+    rows, texts, failures = [], [], []
     with open(path, encoding="utf-8") as file:
         for entry in map(json.loads, filter(str.strip, file)):
-            lines = [line for line in (entry.get("stdout") or "").splitlines() if line.startswith("{")]
-            for line in lines:
-                yield entry["name"], json.loads(line)
-            if entry["result"] != "OK" or not lines:
-                yield entry["name"], None
+            other = []
+            for line in (entry.get("stdout") or "").splitlines():
+                result = parse(line)
+                (rows if result else other).append(result or line)
+            if any(map(str.strip, other)):
+                texts.append((entry["name"], "\n".join(other).strip("\n")))
+            if entry["result"] != "OK":
+                failures.append(entry["name"])
+    return rows, texts, failures
+
+
+def parse(line):
+    """The result on a line, or None."""
+    try:
+        result = json.loads(line)
+    except ValueError:
+        return None
+    return result if isinstance(result, dict) and {"name", "value", "unit"} <= result.keys() else None
 
 
 def verdict(result):
@@ -36,9 +50,7 @@ def verdict(result):
     return "yes" if (result["value"] >= limit if higher else result["value"] <= limit) else "no"
 
 
-def row(name, result):
-    if result is None:
-        return f"| {name} | failed | | | | no |"
+def row(result):
     sign = {"higher": "at least ", "lower": "at most "}[result.get("better", "higher")]
     limit = sign + f"{result['limit']:g}" if result.get("limit") is not None else ""
     return (f"| {result['name']} | {result['value']:.4g} {result['unit']} | {limit} | {result.get('error', '')} | "
@@ -58,10 +70,14 @@ def machine():
 
 
 def main(path, *options):
-    found = list(results(path))
-    table = [machine(), "", "| what | measured | limit | error | note | kept |", "|---|---|---|---|---|---|"]
-    table += [row(name, result) for name, result in found]
-    text = "\n".join(table)
+    rows, texts, failures = results(path)
+    lines = [machine(), ""]
+    if rows:
+        lines += ["| what | measured | limit | error | note | kept |", "|---|---|---|---|---|---|", *map(row, rows), ""]
+    for name, text in texts:
+        lines += [f"`{name}`:", "", "```", text, "```", ""]
+    lines += [f"Failed or missed its limit: {name}." for name in failures]
+    text = "\n".join(lines).rstrip()
     print(text)
     if "--write" in options:
         document = os.path.join(ROOT, "docs", "benchmarks.md")
@@ -70,7 +86,7 @@ def main(path, *options):
         after = rest.partition(END)[2]
         with open(document, "w", encoding="utf-8") as file:
             file.write(f"{before}{BEGIN}\n{text}\n{END}{after}")
-    return 1 if any(result is None or verdict(result) == "no" for _, result in found) else 0
+    return 1 if failures or any(verdict(result) == "no" for result in rows) else 0
 
 
 if __name__ == "__main__":

@@ -101,16 +101,23 @@ private:
 
     Mat4 at_time(rib::TransformId id) { return scene_.transforms[id].at(options_.time); }
 
-    // Without blending, the representations that reach infinite detail are drawn (ri.md 15.2).
+    // Levels of detail without blending (ri.md 12.4): in a transition, the one with the larger
+    // weight is drawn, so that two representations that share the range never both appear nor
+    // vanish.
     bool drawn_at_this_detail(const rib::Primitive& p) {
-        if (scene_.attributes[p.attributes].detail_range[3] >= rib::ri_infinity) {
+        const rib::Attributes& a = scene_.attributes[p.attributes];
+        const auto [least, low, up, most] = a.detail_range;
+        const float detail = a.detail_area_px;
+        if (detail >= low && (detail < up || up >= rib::ri_infinity)) {
             return true;
+        }
+        if (detail < least || detail >= most) {
+            return false;
         }
         diag_.report_once(
             "geo:detail", Severity::Warning, Code::Unimplement, p.pos,
-            "DetailRange: levels of detail are not blended by this version; only those that "
-            "reach infinite detail are drawn");
-        return false;
+            "DetailRange: levels of detail are switched, not blended, by this version");
+        return detail < low ? detail - least >= low - detail : detail - up < most - detail;
     }
 
     void add_shape(const rib::Primitive& p, std::uint32_t index, std::uint32_t object,

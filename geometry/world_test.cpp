@@ -453,6 +453,27 @@ TEST(World, LeavesOutWhatItCannotDraw) {
     EXPECT_EQ(world->stats().shapes, 1u);
 }
 
+TEST(World, OneLevelOfDetailIsDrawn) {
+    const float infinity = rib::ri_infinity;
+    for (const float detail : {0.0f, 9.0f, 10.0f, 14.0f, 15.0f, 16.0f, 20.0f, 1e6f, infinity}) {
+        SceneBuilder b;
+        b.scene.attributes.resize(2);
+        for (rib::Attributes& a : b.scene.attributes) {
+            a.detail_area_px = detail;
+        }
+        b.scene.attributes[0].detail_range = {0, 0, 10, 20};
+        b.scene.attributes[1].detail_range = {10, 20, infinity, infinity};
+        b.add(unit_sphere());
+        b.add(unit_sphere()).attributes = 1;
+        QuietDiag d;
+        const auto world = b.world(d.diag);
+        ASSERT_EQ(world->stats().shapes, 1u) << detail;
+        const Hit hit = trace(*world, {{0, 0.1f, -5}, {0, 0, 1}});
+        ASSERT_TRUE(hit.valid());
+        EXPECT_EQ(world->binding(hit).primitive, detail < 15 ? 0u : 1u);
+    }
+}
+
 TEST(World, HostileGeometry) {
     SceneBuilder b;
     const float huge = 1e38f, nan = NAN;

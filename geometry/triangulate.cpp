@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
+#include <numeric>
 
 namespace geo {
 
@@ -11,396 +13,439 @@ namespace {
 
 constexpr std::uint32_t nil = std::numeric_limits<std::uint32_t>::max();
 
-struct Node {
-    Point2 p;
-    std::uint32_t point; // index into the caller's points
-    std::uint32_t prev, next;
-    bool removed = false;
+using Id = std::uint32_t;
+
+// Triangles as half edges: 3t, 3t+1, 3t+2 run round triangle t, counter-clockwise. All decisions
+// about topology use orient() alone, which is exact; the circle test only chooses among valid
+// triangulations.
+class Mesh {
+public:
+    // Distinct points in lexicographic order.
+    explicit Mesh(std::vector<Point2> points) : p_(std::move(points)), out_(p_.size(), nil) {}
+
+    // Triangulates the convex hull; false when all points lie on a line.
+    bool build() {
+        const Id first = start();
+        if (first == nil) {
+            return false;
+        }
+        for (Id i = first; i < p_.size(); ++i) {
+            extend(i);
+        }
+        improve();
+        return true;
+    }
+
+    // Makes a - b an edge (or a chain of edges through points on it) and toggles whether it is a
+    // border. False if another border is in the way.
+    bool toggle_border(Id a, Id b) {
+        while (a != b) {
+            const Crossing c = leave(a, b);
+            if (c.along != nil) {
+                toggle(c.along);
+                a = c.target;
+            } else if (c.edge == nil) {
+                return false;
+            } else {
+                const Id target = clear_way(a, b, c.edge);
+                const Id edge = target == nil ? nil : find(a, target);
+                if (edge == nil) {
+                    return false;
+                }
+                toggle(edge);
+                a = target;
+            }
+        }
+        return true;
+    }
+
+    // Per triangle: inside by the number of borders between it and the outside.
+    [[nodiscard]] std::vector<bool> inside() const {
+        const std::size_t n = vertex_.size() / 3;
+        std::vector<bool> in(n), seen(n);
+        std::vector<Id> todo;
+        for (Id e = 0; e < vertex_.size(); ++e) {
+            if (twin_[e] == nil && !seen[e / 3]) {
+                seen[e / 3] = true;
+                in[e / 3] = border_[e];
+                todo.push_back(e / 3);
+            }
+        }
+        while (!todo.empty()) {
+            const Id t = todo.back();
+            todo.pop_back();
+            for (Id e = 3 * t; e < 3 * t + 3; ++e) {
+                const Id other = twin_[e] == nil ? nil : twin_[e] / 3;
+                if (other != nil && !seen[other]) {
+                    seen[other] = true;
+                    in[other] = in[t] != border_[e];
+                    todo.push_back(other);
+                }
+            }
+        }
+        return in;
+    }
+
+    [[nodiscard]] std::size_t num_triangles() const { return vertex_.size() / 3; }
+    [[nodiscard]] std::array<Id, 3> triangle(std::size_t t) const {
+        return {vertex_[3 * t], vertex_[3 * t + 1], vertex_[3 * t + 2]};
+    }
+
+private:
+    // How the way from one point to another begins.
+    struct Crossing {
+        Id along = nil;  // a half edge on the way, which ends at target ...
+        Id target = nil; // ... a point on it, or
+        Id edge = nil;   // the half edge opposite the start that it crosses, right end to left end
+    };
+
+    std::vector<Point2> p_;
+    std::vector<Id> vertex_, twin_; // by half edge: where it starts; its opposite, nil on the hull
+    std::vector<bool> border_;      // by half edge
+    std::vector<Id> out_;           // by point: some half edge that starts there
+    std::vector<Id> hull_next_, hull_prev_, hull_edge_; // by point, while building
+    std::uint64_t flips_left_ = 0;
+
+    static Id next(Id e) { return e % 3 == 2 ? e - 2 : e + 1; }
+    static Id prev(Id e) { return e % 3 == 0 ? e + 2 : e - 1; }
+    [[nodiscard]] double side(Id a, Id b, Id c) const { return orient(p_[a], p_[b], p_[c]); }
+
+    // Half edges of the new triangle: a - b is the first.
+    Id add_triangle(Id a, Id b, Id c) {
+        const auto e = static_cast<Id>(vertex_.size());
+        vertex_.insert(vertex_.end(), {a, b, c});
+        twin_.insert(twin_.end(), 3, nil);
+        border_.insert(border_.end(), 3, false);
+        out_[a] = e;
+        out_[b] = e + 1;
+        out_[c] = e + 2;
+        return e;
+    }
+
+    void link(Id e, Id f) {
+        twin_[e] = f;
+        twin_[f] = e;
+    }
+
+    void hull_link(Id a, Id b, Id edge) {
+        hull_next_[a] = b;
+        hull_prev_[b] = a;
+        hull_edge_[a] = edge;
+    }
+
+    // The leading points on one line and the first one off it: a fan. Returns the index to go on
+    // with.
+    Id start() {
+        Id apex = 2;
+        while (apex < p_.size() && side(0, 1, apex) == 0) {
+            ++apex;
+        }
+        if (apex >= p_.size()) {
+            return nil;
+        }
+        hull_next_.resize(p_.size());
+        hull_prev_.resize(p_.size());
+        hull_edge_.resize(p_.size());
+        std::vector<Id> line(apex);
+        std::iota(line.begin(), line.end(), 0);
+        if (side(0, 1, apex) < 0) {
+            std::reverse(line.begin(), line.end());
+        }
+        Id before = nil;
+        for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+            const Id e = add_triangle(line[i], line[i + 1], apex);
+            hull_link(line[i], line[i + 1], e);
+            if (before != nil) {
+                link(before + 1, e + 2);
+            } else {
+                hull_link(apex, line[0], e + 2);
+            }
+            before = e;
+        }
+        hull_link(line.back(), apex, before + 1);
+        return apex + 1;
+    }
+
+    [[nodiscard]] bool visible(Id edge_start, Id from) const {
+        return side(edge_start, hull_next_[edge_start], from) < 0;
+    }
+
+    // A point beyond all earlier ones is joined to the part of the hull that it sees, around the
+    // last point.
+    void extend(Id p) {
+        Id a = p - 1, b = p - 1;
+        while (hull_prev_[a] != p - 1 && visible(hull_prev_[a], p)) {
+            a = hull_prev_[a];
+        }
+        while (hull_next_[b] != a && visible(b, p)) {
+            b = hull_next_[b];
+        }
+        Id before = nil, first = nil;
+        for (Id v = a; v != b;) {
+            const Id w = hull_next_[v];
+            const Id e = add_triangle(w, v, p); // w-v, v-p, p-w
+            link(e, hull_edge_[v]);
+            if (before == nil) {
+                first = e + 1;
+            } else {
+                link(e + 1, before + 2);
+            }
+            before = e;
+            v = w;
+        }
+        if (before != nil) {
+            hull_link(a, p, first);
+            hull_link(p, b, before + 2);
+        }
+    }
+
+    // Lawson's flips. Rounding may make the circle test contradict itself, hence the limit.
+    void improve() {
+        flips_left_ = 16 * std::uint64_t(p_.size());
+        std::vector<Id> todo(vertex_.size());
+        std::iota(todo.begin(), todo.end(), 0);
+        while (!todo.empty() && flips_left_ > 0) {
+            const Id e = todo.back();
+            todo.pop_back();
+            if (twin_[e] != nil && can_flip(e) && in_circle(e)) {
+                const Id f = twin_[e];
+                flip(e);
+                todo.insert(todo.end(), {e, prev(e), f, prev(f)});
+            }
+        }
+        flips_left_ =
+            64 * std::uint64_t(p_.size()) + 100'000'000; // for the borders: against hostile input
+    }
+
+    [[nodiscard]] bool can_flip(Id e) const {
+        const Id f = twin_[e], a = vertex_[e], b = vertex_[f], c = vertex_[prev(e)],
+                 d = vertex_[prev(f)];
+        return side(a, d, c) > 0 && side(b, c, d) > 0;
+    }
+
+    [[nodiscard]] bool in_circle(Id e) const {
+        const Point2 &a = p_[vertex_[e]], &b = p_[vertex_[next(e)]], &c = p_[vertex_[prev(e)]];
+        const Point2& d = p_[vertex_[prev(twin_[e])]];
+        const double ax = a.x - d.x, ay = a.y - d.y, bx = b.x - d.x, by = b.y - d.y, cx = c.x - d.x,
+                     cy = c.y - d.y;
+        const double a2 = ax * ax + ay * ay, b2 = bx * bx + by * by, c2 = cx * cx + cy * cy;
+        return ax * (by * c2 - b2 * cy) - ay * (bx * c2 - b2 * cx) + a2 * (bx * cy - by * cx) > 0;
+    }
+
+    // a-b of triangles (a, b, c) and (b, a, d) becomes c-d of (a, d, c) and (b, c, d).
+    void flip(Id e) {
+        --flips_left_;
+        const Id f = twin_[e], e1 = next(e), e2 = prev(e), f1 = next(f), f2 = prev(f);
+        const Id a = vertex_[e], b = vertex_[f], c = vertex_[e2], d = vertex_[f2];
+        const Id twin_ad = twin_[f1], twin_bc = twin_[e1];
+        const bool border_ad = border_[f1], border_bc = border_[e1];
+        vertex_[e1] = d;
+        vertex_[f1] = c;
+        outer(e, twin_ad, border_ad);
+        outer(f, twin_bc, border_bc);
+        link(e1, f1);
+        border_[e1] = border_[f1] = false;
+        out_[a] = e;
+        out_[b] = f;
+        out_[c] = e2;
+        out_[d] = f2;
+    }
+
+    void outer(Id e, Id twin, bool border) {
+        twin_[e] = twin;
+        border_[e] = border;
+        if (twin != nil) {
+            twin_[twin] = e;
+        }
+    }
+
+    void toggle(Id e) {
+        border_[e] = !border_[e];
+        if (twin_[e] != nil) {
+            border_[twin_[e]] = border_[e];
+        }
+    }
+
+    // Calls visit(half edge that starts at a) for every triangle at a until it returns true.
+    template <class Visit> void around(Id a, Visit visit) const {
+        const Id first = out_[a];
+        Id e = first;
+        do {
+            if (visit(e)) {
+                return;
+            }
+            e = twin_[prev(e)];
+        } while (e != nil && e != first);
+        if (e == nil) { // a lies on the hull: the other way round
+            for (e = twin_[first]; e != nil; e = twin_[e]) {
+                e = next(e);
+                if (visit(e)) {
+                    return;
+                }
+            }
+        }
+    }
+
+    [[nodiscard]] Id find(Id a, Id b) const {
+        Id found = nil;
+        around(a, [&](Id e) {
+            found = vertex_[next(e)] == b ? e : vertex_[prev(e)] == b ? prev(e) : nil;
+            return found != nil;
+        });
+        return found;
+    }
+
+    [[nodiscard]] bool on_way(Id a, Id b, Id v) const {
+        return v == b || (side(a, b, v) == 0 && (p_[b].x - p_[a].x) * (p_[v].x - p_[a].x) +
+                                                        (p_[b].y - p_[a].y) * (p_[v].y - p_[a].y) >
+                                                    0);
+    }
+
+    [[nodiscard]] Crossing leave(Id a, Id b) const {
+        Crossing c;
+        around(a, [&](Id e) {
+            const Id v = vertex_[next(e)], w = vertex_[prev(e)];
+            if (on_way(a, b, v)) {
+                c.along = e;
+                c.target = v;
+            } else if (on_way(a, b, w)) {
+                c.along = prev(e);
+                c.target = w;
+            } else if (side(a, b, v) < 0 && side(a, b, w) > 0) {
+                c.edge = next(e);
+            }
+            return c.along != nil || c.edge != nil;
+        });
+        return c;
+    }
+
+    // Flips away what crosses the way from a to b, up to the first point on it, which is returned;
+    // nil if a border is in the way. [Sloan93] section 4.
+    Id clear_way(Id a, Id b, Id edge) {
+        std::deque<std::pair<Id, Id>> crossing; // by ends, as flips rename half edges
+        Id target = b;
+        for (Id e = edge;;) {
+            if (border_[e]) {
+                return nil;
+            }
+            crossing.emplace_back(vertex_[e], vertex_[next(e)]);
+            const Id f = twin_[e];
+            if (f == nil) {
+                return nil; // cannot happen with exact signs
+            }
+            const Id x = vertex_[prev(f)];
+            const double s = x == b ? 0 : side(a, b, x);
+            if (s == 0) {
+                target = x;
+                break;
+            }
+            e = s > 0 ? next(f) : prev(f);
+        }
+        while (!crossing.empty()) {
+            const auto [v, w] = crossing.front();
+            crossing.pop_front();
+            const Id e = find(v, w);
+            if (e == nil || twin_[e] == nil || flips_left_ == 0) {
+                return nil;
+            }
+            --flips_left_; // also counts waiting, so that the loop ends
+            if (!can_flip(e)) {
+                crossing.emplace_back(v, w);
+                continue;
+            }
+            const Id c = vertex_[prev(e)], d = vertex_[prev(twin_[e])];
+            ++flips_left_;
+            flip(e);
+            if (c != a && c != target && d != a && d != target &&
+                (side(a, target, c) > 0) != (side(a, target, d) > 0)) {
+                crossing.emplace_back(c, d);
+            }
+        }
+        return target;
+    }
 };
 
-struct Loop {
-    std::uint32_t start = nil; // any node of the ring
-    double area2 = 0;          // twice the signed area
-    Point2 lo{}, hi{};
-    std::uint32_t leftmost = nil;
-    int depth = 0;
-    std::uint32_t parent = nil;
+// Points without repetition, in lexicographic order, and the way back.
+struct Distinct {
+    std::vector<Point2> points;
+    std::vector<Id> original; // by distinct point: its first occurrence
+    std::vector<Id> index;    // by input point
+
+    explicit Distinct(std::span<const Point2> in) : index(in.size()) {
+        std::vector<Id> order(in.size());
+        std::iota(order.begin(), order.end(), 0);
+        std::sort(order.begin(), order.end(), [&](Id a, Id b) {
+            return in[a].x != in[b].x   ? in[a].x < in[b].x
+                   : in[a].y != in[b].y ? in[a].y < in[b].y
+                                        : a < b;
+        });
+        for (const Id i : order) {
+            if (points.empty() || !(points.back() == in[i])) {
+                points.push_back(in[i]);
+                original.push_back(i);
+            }
+            index[i] = static_cast<Id>(points.size() - 1);
+        }
+    }
 };
 
-bool in_triangle(const Point2& a, const Point2& b, const Point2& c, const Point2& p) {
-    return orient(a, b, p) >= 0 && orient(b, c, p) >= 0 && orient(c, a, p) >= 0;
+bool even_odd(std::span<const Point2> points, std::span<const Id> loop_sizes, const Point2& p) {
+    bool odd = false;
+    std::size_t first = 0;
+    for (const Id n : loop_sizes) {
+        for (std::size_t i = 0; i < n; ++i) {
+            const Point2 &a = points[first + i], &b = points[first + (i + 1) % n];
+            odd ^= (a.y > p.y) != (b.y > p.y) && (orient(a, b, p) > 0) == (b.y > a.y);
+        }
+        first += n;
+    }
+    return odd;
 }
 
-// Buckets of the reflex corners, so that an ear looks only at those near it.
-class ReflexGrid {
-public:
-    void build(std::span<const Node> nodes, std::span<const std::uint32_t> reflex) {
-        lo_ = {1e300, 1e300};
-        Point2 hi{-1e300, -1e300};
-        for (const std::uint32_t i : reflex) {
-            lo_ = {std::min(lo_.x, nodes[i].p.x), std::min(lo_.y, nodes[i].p.y)};
-            hi = {std::max(hi.x, nodes[i].p.x), std::max(hi.y, nodes[i].p.y)};
-        }
-        side_ =
-            std::clamp(static_cast<int>(std::sqrt(static_cast<double>(reflex.size()))), 1, 1024);
-        scale_ = {side_ / std::max(hi.x - lo_.x, 1e-300), side_ / std::max(hi.y - lo_.y, 1e-300)};
-        start_.assign(static_cast<std::size_t>(side_) * side_ + 1, 0);
-        for (const std::uint32_t i : reflex) {
-            ++start_[cell(nodes[i].p) + 1];
-        }
-        for (std::size_t i = 1; i < start_.size(); ++i) {
-            start_[i] += start_[i - 1];
-        }
-        items_.resize(reflex.size());
-        std::vector<std::uint32_t> fill(start_.begin(), start_.end() - 1);
-        for (const std::uint32_t i : reflex) {
-            items_[fill[cell(nodes[i].p)]++] = i;
-        }
+bool winds_clockwise(std::span<const Point2> points, std::span<const Id> loop_sizes) {
+    double area = 0;
+    for (std::size_t i = 1; !loop_sizes.empty() && i + 1 < loop_sizes[0]; ++i) {
+        area += orient(points[0], points[i], points[i + 1]);
     }
-
-    // Calls visit(node) for corners that may lie in the box until it returns true.
-    template <class Visit> bool any(const Point2& lo, const Point2& hi, Visit visit) const {
-        for (int y = row(lo.y); y <= row(hi.y); ++y) {
-            for (int x = column(lo.x); x <= column(hi.x); ++x) {
-                const std::size_t c = static_cast<std::size_t>(y) * side_ + x;
-                for (std::uint32_t k = start_[c]; k < start_[c + 1]; ++k) {
-                    if (visit(items_[k])) {
-                        return true;
-                    }
-                }
-            }
-        }
-        return false;
-    }
-
-private:
-    Point2 lo_{}, scale_{};
-    int side_ = 1;
-    std::vector<std::uint32_t> start_, items_;
-
-    [[nodiscard]] int bucket(double x) const {
-        return static_cast<int>(std::clamp(x, 0.0, side_ - 1.0));
-    }
-    [[nodiscard]] int column(double x) const { return bucket((x - lo_.x) * scale_.x); }
-    [[nodiscard]] int row(double y) const { return bucket((y - lo_.y) * scale_.y); }
-    [[nodiscard]] std::size_t cell(const Point2& p) const {
-        return static_cast<std::size_t>(row(p.y)) * side_ + column(p.x);
-    }
-};
-
-class Clipper {
-public:
-    Clipper(std::span<const Point2> points, std::span<const std::uint32_t> loop_sizes) {
-        nodes_.reserve(points.size() + 2 * loop_sizes.size());
-        std::uint32_t first = 0;
-        for (const std::uint32_t size : loop_sizes) {
-            add_loop(points, first, size);
-            first += size;
-        }
-    }
-
-    Triangulation run() {
-        if (loops_.empty()) {
-            return std::move(result_);
-        }
-        nest();
-        const bool first_is_ccw = loops_.front().area2 > 0;
-        for (std::uint32_t i = 0; i < loops_.size(); ++i) {
-            if (loops_[i].depth % 2 == 0) {
-                clip(bridged(i));
-            }
-        }
-        if (!first_is_ccw) {
-            for (auto& t : result_.triangles) {
-                std::swap(t[1], t[2]);
-            }
-        }
-        return std::move(result_);
-    }
-
-private:
-    std::vector<Node> nodes_;
-    std::vector<Loop> loops_;
-    Triangulation result_;
-
-    [[nodiscard]] const Node& next(std::uint32_t i) const { return nodes_[nodes_[i].next]; }
-    [[nodiscard]] const Node& prev(std::uint32_t i) const { return nodes_[nodes_[i].prev]; }
-    [[nodiscard]] double corner(std::uint32_t i) const {
-        return orient(prev(i).p, nodes_[i].p, next(i).p);
-    }
-
-    // Drops repeated points; loops of fewer than three, or without area, are left out.
-    void add_loop(std::span<const Point2> points, std::uint32_t first, std::uint32_t size) {
-        const auto base = static_cast<std::uint32_t>(nodes_.size());
-        for (std::uint32_t i = first; i < first + size; ++i) {
-            if (nodes_.size() == base || !(nodes_.back().p == points[i])) {
-                nodes_.push_back({points[i], i, 0, 0});
-            }
-        }
-        while (nodes_.size() > base + 1 && nodes_.back().p == nodes_[base].p) {
-            nodes_.pop_back();
-        }
-        const auto count = static_cast<std::uint32_t>(nodes_.size()) - base;
-        Loop loop;
-        loop.start = loop.leftmost = base;
-        loop.lo = loop.hi = nodes_[base].p;
-        for (std::uint32_t k = 0; k < count; ++k) {
-            Node& n = nodes_[base + k];
-            n.prev = base + (k + count - 1) % count;
-            n.next = base + (k + 1) % count;
-            loop.lo = {std::min(loop.lo.x, n.p.x), std::min(loop.lo.y, n.p.y)};
-            loop.hi = {std::max(loop.hi.x, n.p.x), std::max(loop.hi.y, n.p.y)};
-            loop.area2 += orient(nodes_[base].p, n.p, nodes_[n.next].p);
-            const Point2& best = nodes_[loop.leftmost].p;
-            if (n.p.x < best.x || (n.p.x == best.x && n.p.y < best.y)) {
-                loop.leftmost = base + k;
-            }
-        }
-        if (count < 3 || loop.area2 == 0) {
-            nodes_.resize(base);
-        } else {
-            loops_.push_back(loop);
-        }
-    }
-
-    void reverse(std::uint32_t start) {
-        std::uint32_t i = start;
-        do {
-            std::swap(nodes_[i].prev, nodes_[i].next);
-            i = nodes_[i].prev;
-        } while (i != start);
-    }
-
-    [[nodiscard]] bool inside(const Point2& p, const Loop& loop) const {
-        if (p.x < loop.lo.x || p.x > loop.hi.x || p.y < loop.lo.y || p.y > loop.hi.y) {
-            return false;
-        }
-        bool odd = false;
-        std::uint32_t i = loop.start;
-        do {
-            const Point2 &a = nodes_[i].p, &b = next(i).p;
-            if ((a.y > p.y) != (b.y > p.y) && (orient(a, b, p) > 0) == (b.y > a.y)) {
-                odd = !odd;
-            }
-            i = nodes_[i].next;
-        } while (i != loop.start);
-        return odd;
-    }
-
-    // Depth of a loop = number of loops around it; the parent is the innermost of them.
-    void nest() {
-        constexpr std::uint64_t budget =
-            200'000'000; // point-in-loop steps, against hostile loop counts
-        if (loops_.size() * std::uint64_t(nodes_.size()) > budget) {
-            for (std::uint32_t i = 1; i < loops_.size(); ++i) {
-                loops_[i].depth = 1;
-                loops_[i].parent = 0;
-            }
-            result_.clean = false;
-        } else if (loops_.size() > 1) {
-            nest_by_containment();
-        }
-        for (Loop& loop : loops_) {
-            const bool want_ccw = loop.depth % 2 == 0;
-            if ((loop.area2 > 0) != want_ccw) {
-                reverse(loop.start);
-            }
-        }
-    }
-
-    void nest_by_containment() {
-        for (std::uint32_t i = 0; i < loops_.size(); ++i) {
-            double smallest = std::numeric_limits<double>::infinity();
-            for (std::uint32_t j = 0; j < loops_.size(); ++j) {
-                const double area = std::fabs(loops_[j].area2);
-                if (i != j && area >= std::fabs(loops_[i].area2) &&
-                    inside(nodes_[loops_[i].leftmost].p, loops_[j])) {
-                    ++loops_[i].depth;
-                    if (area < smallest) {
-                        smallest = area;
-                        loops_[i].parent = j;
-                    }
-                }
-            }
-        }
-    }
-
-    // The ring of a filled loop with its holes joined to it.
-    std::uint32_t bridged(std::uint32_t outer) {
-        std::vector<std::uint32_t> holes;
-        for (std::uint32_t i = 0; i < loops_.size(); ++i) {
-            if (loops_[i].parent == outer && loops_[i].depth == loops_[outer].depth + 1) {
-                holes.push_back(loops_[i].leftmost);
-            }
-        }
-        std::sort(holes.begin(), holes.end(), [&](std::uint32_t a, std::uint32_t b) {
-            return nodes_[a].p.x != nodes_[b].p.x ? nodes_[a].p.x < nodes_[b].p.x : a < b;
-        });
-        const std::uint32_t ring = loops_[outer].start;
-        for (const std::uint32_t hole : holes) {
-            const std::uint32_t to = find_bridge(nodes_[hole].p, ring);
-            if (to == nil) {
-                result_.clean = false;
-            } else {
-                join(to, hole);
-            }
-        }
-        return ring;
-    }
-
-    // A corner of the ring that the hole's leftmost point sees: the ray to the left meets an edge,
-    // whose left end is visible unless reflex corners lie in between; of those the one nearest to
-    // the ray is.
-    [[nodiscard]] std::uint32_t find_bridge(const Point2& h, std::uint32_t ring) const {
-        double reach = -std::numeric_limits<double>::infinity();
-        std::uint32_t best = nil, i = ring;
-        do {
-            const Point2 &a = nodes_[i].p, &b = next(i).p;
-            if (a.y >= h.y && h.y >= b.y &&
-                a.y != b.y) { // the inside is to the right of a falling edge
-                const double x = a.x + (h.y - a.y) * (b.x - a.x) / (b.y - a.y);
-                if (x <= h.x && x > reach) {
-                    reach = x;
-                    best = a.x < b.x ? i : nodes_[i].next;
-                    if (a == h || b == h) {
-                        return a == h ? i : nodes_[i].next;
-                    }
-                }
-            }
-            i = nodes_[i].next;
-        } while (i != ring);
-        return best == nil ? nil : nearest_visible(h, reach, best, ring);
-    }
-
-    [[nodiscard]] std::uint32_t nearest_visible(const Point2& h, double reach, std::uint32_t best,
-                                                std::uint32_t ring) const {
-        const Point2 m = nodes_[best].p, q{reach, h.y};
-        double least = std::numeric_limits<double>::infinity();
-        std::uint32_t i = ring;
-        do {
-            const Point2& p = nodes_[i].p;
-            if (p.x < h.x && p.x >= m.x && in_either(h, q, m, p) && sees(i, h)) {
-                const double slope = std::fabs(h.y - p.y) / (h.x - p.x);
-                if (slope < least || (slope == least && p.x > nodes_[best].p.x)) {
-                    least = slope;
-                    best = i;
-                }
-            }
-            i = nodes_[i].next;
-        } while (i != ring);
-        return best;
-    }
-
-    [[nodiscard]] static bool in_either(const Point2& a, const Point2& b, const Point2& c,
-                                        const Point2& p) {
-        return in_triangle(a, b, c, p) || in_triangle(a, c, b, p);
-    }
-
-    // Whether the segment from node i to p starts into the inside of the ring.
-    [[nodiscard]] bool sees(std::uint32_t i, const Point2& p) const {
-        const Point2 &a = prev(i).p, &b = nodes_[i].p, &c = next(i).p;
-        return orient(a, b, c) > 0 ? orient(a, b, p) >= 0 && orient(b, c, p) >= 0
-                                   : orient(a, b, p) >= 0 || orient(b, c, p) >= 0;
-    }
-
-    // Cuts the region open along a - b: both rings become one.
-    void join(std::uint32_t a, std::uint32_t b) {
-        const auto a2 = static_cast<std::uint32_t>(nodes_.size()), b2 = a2 + 1;
-        const std::uint32_t after_a = nodes_[a].next, before_b = nodes_[b].prev;
-        nodes_.push_back({nodes_[a].p, nodes_[a].point, b2, after_a});
-        nodes_.push_back({nodes_[b].p, nodes_[b].point, before_b, a2});
-        nodes_[after_a].prev = a2;
-        nodes_[before_b].next = b2;
-        nodes_[a].next = b;
-        nodes_[b].prev = a;
-    }
-
-    void clip(std::uint32_t ring) {
-        std::vector<std::uint32_t> reflex;
-        std::size_t left = 0;
-        std::uint32_t i = ring;
-        do {
-            ++left;
-            if (corner(i) <= 0) {
-                reflex.push_back(i);
-            }
-            i = nodes_[i].next;
-        } while (i != ring);
-        ReflexGrid grid;
-        grid.build(nodes_, reflex);
-
-        std::size_t since_ear = 0;
-        while (left > 3) {
-            const bool stuck = since_ear > left; // a whole round without an ear
-            const double turn = corner(i);
-            // Straight corners are kept as long as there are ears: dropping one would open a crack
-            // to a neighbour.
-            const bool ear = turn > 0 ? stuck || is_ear(i, grid) : stuck && turn == 0;
-            if (ear || since_ear > 2 * left) {
-                result_.clean = result_.clean && !stuck;
-                i = cut(i, turn);
-                --left;
-                since_ear = 0;
-            } else {
-                i = nodes_[i].next;
-                ++since_ear;
-            }
-        }
-        emit(i, corner(i));
-    }
-
-    // Takes the corner off the ring; returns where to go on: one further, which avoids thin fans.
-    std::uint32_t cut(std::uint32_t i, double turn) {
-        emit(i, turn);
-        const std::uint32_t before = nodes_[i].prev, after = nodes_[i].next;
-        nodes_[before].next = after;
-        nodes_[after].prev = before;
-        nodes_[i].removed = true;
-        return nodes_[after].next;
-    }
-
-    void emit(std::uint32_t i, double turn) {
-        if (turn > 0) {
-            result_.triangles.push_back({prev(i).point, nodes_[i].point, next(i).point});
-        }
-    }
-
-    // No other corner of the ring inside. Corners that were convex stay so, hence the grid of
-    // reflex ones is enough.
-    [[nodiscard]] bool is_ear(std::uint32_t i, const ReflexGrid& grid) const {
-        const std::uint32_t ia = nodes_[i].prev, ic = nodes_[i].next;
-        const Point2 &a = nodes_[ia].p, &b = nodes_[i].p, &c = nodes_[ic].p;
-        const Point2 lo{std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y})};
-        const Point2 hi{std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y})};
-        return !grid.any(lo, hi, [&](std::uint32_t k) {
-            const Node& n = nodes_[k];
-            return !n.removed && k != ia && k != i && k != ic && corner(k) <= 0 &&
-                   in_triangle(a, b, c, n.p) && !touches_only(k, a, b, c);
-        });
-    }
-
-    // A corner at the same place as one of the ear's (bridges double their ends) blocks the ear
-    // only if its edges lead into it.
-    [[nodiscard]] bool touches_only(std::uint32_t k, const Point2& a, const Point2& b,
-                                    const Point2& c) const {
-        const Point2& p = nodes_[k].p;
-        if (!(p == a || p == b || p == c)) {
-            return false;
-        }
-        return !strictly_inside(a, b, c, prev(k).p) && !strictly_inside(a, b, c, next(k).p);
-    }
-
-    [[nodiscard]] static bool strictly_inside(const Point2& a, const Point2& b, const Point2& c,
-                                              const Point2& p) {
-        return orient(a, b, p) > 0 && orient(b, c, p) > 0 && orient(c, a, p) > 0;
-    }
-};
+    return area < 0;
+}
 
 } // namespace
 
 Triangulation triangulate(std::span<const Point2> points,
                           std::span<const std::uint32_t> loop_sizes) {
-    return Clipper(points, loop_sizes).run();
+    Triangulation result;
+    const Distinct distinct(points);
+    Mesh mesh(distinct.points);
+    if (distinct.points.size() < 3 || !mesh.build()) {
+        return result;
+    }
+    std::size_t first = 0;
+    for (const Id n : loop_sizes) {
+        for (std::size_t i = 0; i < n; ++i) {
+            result.clean &=
+                mesh.toggle_border(distinct.index[first + i], distinct.index[first + (i + 1) % n]);
+        }
+        first += n;
+    }
+    // Where outlines cross, no border separates the sides everywhere: look at each triangle's
+    // centre, if there is time.
+    constexpr std::uint64_t affordable = 100'000'000;
+    const bool by_centre =
+        !result.clean && mesh.num_triangles() * std::uint64_t(points.size()) <= affordable;
+    const std::vector<bool> inside = mesh.inside();
+    const bool clockwise = winds_clockwise(points, loop_sizes);
+    for (std::size_t t = 0; t < mesh.num_triangles(); ++t) {
+        const auto [a, b, c] = mesh.triangle(t);
+        const Point2 &pa = distinct.points[a], &pb = distinct.points[b], &pc = distinct.points[c];
+        const Point2 centre{(pa.x + pb.x + pc.x) / 3, (pa.y + pb.y + pc.y) / 3};
+        if (by_centre ? even_odd(points, loop_sizes, centre) : inside[t]) {
+            const Id i = distinct.original[a], j = distinct.original[b], k = distinct.original[c];
+            result.triangles.push_back(clockwise ? std::array<Id, 3>{i, k, j}
+                                                 : std::array<Id, 3>{i, j, k});
+        }
+    }
+    return result;
 }
 
 } // namespace geo

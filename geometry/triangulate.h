@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Triangulation of plane regions bounded by loops, filled by the even-odd rule: concave outlines,
-// holes, islands. In: loops of points, any winding. Out: triangles of the given points only (so
-// neighbouring polygons stay free of cracks), all wound like the first loop. Never fails: what
-// cannot be triangulated cleanly (crossing or touching outlines) is cut as well as it goes and said
-// so. Source: ear clipping with bridged holes, D. Eberly, "Triangulation by Ear Clipping" (2002).
+// holes, islands, outlines that touch or run along each other. In: loops of points, any winding.
+// Out: triangles of the given points only, every point a corner, so that neighbouring polygons stay
+// free of cracks; wound like the first loop. Never fails: where outlines cross, triangles are
+// chosen by their centres and the result says so. Source: constrained Delaunay triangulation by
+// edge flips, [Sloan93].
 #pragma once
 
 #include <array>
@@ -27,7 +28,7 @@ struct Point2 {
 
 struct Triangulation {
     std::vector<std::array<std::uint32_t, 3>> triangles; // indices into the points
-    bool clean = true; // false: outlines cross or touch in a way that left no proper ear
+    bool clean = true;                                   // false: outlines cross
 };
 
 // points: all loops one after another; loop_sizes: their lengths.

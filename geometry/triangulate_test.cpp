@@ -183,6 +183,51 @@ TEST(Triangulate, ClosedAndRepeatedPoints) {
     expect_coverage(o, t, 3);
 }
 
+// Outlines that touch without crossing: exporters cut holes open along a bridge, and outlines of
+// letters and maps meet at points.
+TEST(Triangulate, TouchingOutlines) {
+    const std::vector<Point2> square{{-3, -3}, {3, -3}, {3, 3}, {-3, 3}};
+    std::vector<Outline> outlines(6);
+    // A hole cut open: in along an edge, round, and back along the same edge.
+    outlines[0].add({{-3, -3},
+                     {3, -3},
+                     {3, 3},
+                     {-3, 3},
+                     {-3, -3},
+                     {-1, -1},
+                     {-1, 1},
+                     {1, 1},
+                     {1, -1},
+                     {-1, -1}});
+    // A hole that touches the outline at a corner, and one in the middle of an edge.
+    outlines[1].add(square);
+    outlines[1].add({{-3, -3}, {0, 1}, {1, 0}});
+    outlines[2].add({{-3, -3}, {0, -3}, {3, -3}, {3, 3}, {-3, 3}});
+    outlines[2].add({{0, -3}, {-1, 1}, {1, 1}});
+    // Two holes that touch each other.
+    outlines[3].add(square);
+    outlines[3].add({{0, 0}, {-2, -1}, {-2, 1}});
+    outlines[3].add({{0, 0}, {2, 1}, {2, -1}});
+    // An outline that pinches itself.
+    outlines[4].add({{-3, -3}, {3, -3}, {0, 0}, {3, 3}, {-3, 3}, {0, 0}});
+    // Two islands that meet in a point.
+    outlines[5].add({{-3, -1}, {0, 0}, {-3, 1}});
+    outlines[5].add({{3, -1}, {0, 0}, {3, 1}});
+    for (std::size_t i = 0; i < outlines.size(); ++i) {
+        SCOPED_TRACE(i);
+        const Outline& o = outlines[i];
+        for (std::size_t turn = 0; turn < o.sizes[0]; ++turn) { // wherever the first loop starts
+            Outline turned = o;
+            std::rotate(turned.points.begin(),
+                        turned.points.begin() + static_cast<std::ptrdiff_t>(turn),
+                        turned.points.begin() + o.sizes[0]);
+            const Triangulation t = triangulate(turned.points, turned.sizes);
+            EXPECT_TRUE(t.clean) << turn;
+            expect_coverage(turned, t, 3);
+        }
+    }
+}
+
 TEST(Triangulate, DegenerateInputGivesNothing) {
     EXPECT_TRUE(triangulate({}, {}).triangles.empty());
     const std::vector<Point2> line{{0, 0}, {1, 1}, {2, 2}, {3, 3}};

@@ -188,6 +188,31 @@ std::optional<SpanMap> SpanMap::nurbs(int num_points, int order, std::span<const
     return map;
 }
 
+// De Casteljau at 1/2: row i of the left half is the mean over level i, the right half mirrors it.
+SpanMap SpanMap::halved() const {
+    SpanMap map = *this;
+    map.parts_.clear();
+    const auto n = static_cast<std::size_t>(degree_) + 1;
+    for (const Part& whole : parts_) {
+        const std::size_t columns = whole.input.size();
+        Part left = whole, right = whole;
+        left.t1 = right.t0 = (whole.t0 + whole.t1) / 2;
+        std::vector<double> level = whole.weights;
+        for (std::size_t r = 0; r < n; ++r) {
+            std::copy_n(level.begin(), columns,
+                        left.weights.begin() + static_cast<std::ptrdiff_t>(r * columns));
+            std::copy_n(level.begin() + static_cast<std::ptrdiff_t>((n - 1 - r) * columns), columns,
+                        right.weights.begin() + static_cast<std::ptrdiff_t>((n - 1 - r) * columns));
+            for (std::size_t i = 0; i < (n - 1 - r) * columns; ++i) {
+                level[i] = (level[i] + level[i + columns]) / 2;
+            }
+        }
+        map.parts_.push_back(std::move(left));
+        map.parts_.push_back(std::move(right));
+    }
+    return map;
+}
+
 std::optional<PatchLayout> PatchLayout::make(const rib::Patches& patches, const rib::Basis& basis,
                                              std::string& reason) {
     auto u = patches.bicubic

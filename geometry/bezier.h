@@ -39,6 +39,9 @@ public:
     static std::optional<SpanMap> nurbs(int num_points, int order, std::span<const float> knots,
                                         double min, double max, std::string& reason);
 
+    // Every part cut in two at its middle: the same surface from twice as many parts.
+    [[nodiscard]] SpanMap halved() const;
+
     [[nodiscard]] int degree() const { return degree_; }
     [[nodiscard]] int num_points() const { return num_points_; }
     [[nodiscard]] int num_segments() const {

@@ -335,42 +335,65 @@ std::vector<double> height_net(const PatchLayout& layout, const std::vector<doub
     return net;
 }
 
+// The net of a rational surface whose Bezier weights are all positive, so that its points lie in
+// their hull and none is at infinity. Control points without weight are legal (the half circle of
+// three points has one); cutting the parts makes them finite, unless the surface itself passes
+// through infinity.
+std::vector<double> rational_net(PatchLayout& layout, const std::vector<double>& control) {
+    constexpr int max_cuts = 5;
+    for (int cut = 0; cut <= max_cuts; ++cut) {
+        std::vector<double> net = position_net(layout, control, true);
+        bool positive = true;
+        for (std::size_t i = 3; i < net.size() && positive; i += 4) {
+            positive = net[i] > 0;
+        }
+        if (positive) {
+            return net;
+        }
+        layout = {layout.u.halved(), layout.v.halved()};
+    }
+    return {};
+}
+
 std::unique_ptr<Surface> make_surface_of(PatchLayout layout, const ParamRange& range,
                                          const rib::ParamList& params, bool allow_height,
                                          std::string& why) {
-    const auto count = static_cast<std::size_t>(layout.u.num_points()) *
-                       static_cast<std::size_t>(layout.v.num_points());
-    PatchData data{std::move(layout), {}, {}, range};
-    if (const rib::Param* Pw = params.find("Pw")) {
-        const std::vector<double> control = control_values(*Pw, count, 4, why);
-        if (control.empty()) {
-            return nullptr;
-        }
-        for (std::size_t i = 3; i < control.size(); i += 4) {
-            data.weights.push_back(control[i]);
-        }
-        data.net = position_net(data.layout, control, true);
-    } else if (const rib::Param* P = params.find("P")) {
-        const std::vector<double> control = control_values(*P, count, 3, why);
-        if (control.empty()) {
-            return nullptr;
-        }
-        data.net = position_net(data.layout, control, false);
-    } else if (const rib::Param* Pz = allow_height ? params.find("Pz") : nullptr) {
-        const std::vector<double> control = control_values(*Pz, count, 1, why);
-        if (control.empty()) {
-            return nullptr;
-        }
-        data.net = height_net(data.layout, control);
-    } else {
+    const rib::Param* position = params.find("Pw");
+    const bool rational = position != nullptr;
+    if (!position) {
+        position = params.find("P");
+    }
+    const bool is_height = !position && allow_height && params.find("Pz");
+    if (is_height) {
+        position = params.find("Pz");
+    }
+    if (!position) {
         why = allow_height ? "needs \"P\", \"Pw\" or \"Pz\"" : "needs \"P\" or \"Pw\"";
         return nullptr;
     }
-    for (std::size_t i = 3; i < data.net.size(); i += 4) {
-        if (!(data.net[i] > 0)) {
-            why = "a weight of \"Pw\" is not positive";
+    const auto count = static_cast<std::size_t>(layout.u.num_points()) *
+                       static_cast<std::size_t>(layout.v.num_points());
+    const std::vector<double> control = control_values(*position, count,
+                                                       rational    ? 4
+                                                       : is_height ? 1
+                                                                   : 3,
+                                                       why);
+    if (control.empty()) {
+        return nullptr;
+    }
+    PatchData data{std::move(layout), {}, {}, range};
+    if (rational) {
+        for (std::size_t i = 3; i < control.size(); i += 4) {
+            data.weights.push_back(control[i]);
+        }
+        data.net = rational_net(data.layout, control);
+        if (data.net.empty()) {
+            why = "the weights of \"Pw\" send the surface through infinity";
             return nullptr;
         }
+    } else {
+        data.net = is_height ? height_net(data.layout, control)
+                             : position_net(data.layout, control, false);
     }
     return std::make_unique<PatchSurface>(std::move(data));
 }

@@ -121,6 +121,29 @@ TEST(Patch, HeightFieldIsExactInXAndY) {
     EXPECT_LT(length(p.P - V3d{0.25, 0.5, 1.25}), 1e-15);
 }
 
+// The half circle of three points: the middle one has no weight.
+TEST(Patch, ControlPointsWithoutWeightAreLegal) {
+    rib::ParamList params;
+    params.params.push_back(
+        floats("Pw", {-1, 0, 0, 1, 0, 1, 0, 0, 1, 0, 0, 1, -1, 0, 1, 1, 0, 1, 0, 0, 1, 0, 1, 1}));
+    std::string why;
+    const rib::NuPatch patch{.nu = 3,
+                             .uorder = 3,
+                             .nv = 2,
+                             .vorder = 2,
+                             .uknot = {0, 0, 0, 1, 1, 1},
+                             .vknot = {0, 0, 1, 1}};
+    const auto s = geo::make_nupatch(patch, params, why);
+    ASSERT_TRUE(s) << why;
+    EXPECT_EQ(s->num_items(rib::StorageClass::Varying), 4u);
+    for (std::uint32_t part = 0; part < s->num_parts(); ++part) {
+        for (double x : {0.0, 0.3, 1.0}) {
+            const auto p = s->evaluate({part, x, 0.5});
+            EXPECT_NEAR(p.P.x * p.P.x + p.P.y * p.P.y, 1, 1e-14);
+        }
+    }
+}
+
 TEST(Patch, BadInputIsRefusedWithAReason) {
     std::string why;
     rib::ParamList none;

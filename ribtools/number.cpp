@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ribtools/number.h"
 
-#include <bit>
 #include <cfloat>
 #include <charconv>
 #include <cmath>
@@ -111,18 +110,10 @@ double to_double(const Decimal& d) {
     return slow(d, DBL_MAX);
 }
 
-// The double is x correctly rounded, so both lie on the same side of every float midpoint unless
-// the double is one: then, and for subnormal floats, the digits decide.
 float to_float(const Decimal& d) {
     double value = 0;
-    if (fast_double(d, value)) {
-        constexpr std::uint64_t low_mask = (1ull << 29) - 1, midpoint = 1ull << 28;
-        const bool is_midpoint = (std::bit_cast<std::uint64_t>(value) & low_mask) == midpoint;
-        if (value == 0 || (!is_midpoint && value >= static_cast<double>(FLT_MIN))) {
-            const float f =
-                value >= static_cast<double>(FLT_MAX) ? FLT_MAX : static_cast<float>(value);
-            return d.negative ? -f : f;
-        }
+    if (fast_double(d, value) && rounds_once(value)) {
+        return static_cast<float>(d.negative ? -value : value);
     }
     return slow(d, FLT_MAX);
 }

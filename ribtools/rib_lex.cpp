@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t block_size = 256 * 1024;
 // The longest name or number; a longer run of regular characters is garbage.
-constexpr std::size_t max_run = 64 * 1024;
+constexpr std::ptrdiff_t max_run = 64 * 1024;
 
 enum CharClass : std::uint8_t { Regular, White, LineEnd, Delimiter, High };
 
@@ -41,6 +41,10 @@ bool starts_number(char c) {
 std::int32_t to_int(double value, bool& inexact, bool& overflow) {
     constexpr double lowest = std::numeric_limits<std::int32_t>::min();
     constexpr double highest = std::numeric_limits<std::int32_t>::max();
+    if (const auto exact = static_cast<std::int64_t>(std::fabs(value) < highest ? value : 0.5);
+        static_cast<double>(exact) == value) {
+        return static_cast<std::int32_t>(exact); // without a call of trunc()
+    }
     const double whole = std::trunc(value);
     inexact |= whole != value;
     overflow |= !(whole >= lowest && whole <= highest);
@@ -49,7 +53,7 @@ std::int32_t to_int(double value, bool& inexact, bool& overflow) {
 
 Lexer::Lexer(std::unique_ptr<ByteSource> source, base::SourcePos start,
              const CommentHandler* on_comment)
-    : source_(std::move(source)), on_comment_(on_comment), buffer_(1 + block_size + 1),
+    : source_(std::move(source)), on_comment_(on_comment), buffer_(1 + block_size + number_padding),
       p_(buffer_.data() + 1), end_(p_), file_id_(start.file_id), line_(start.line),
       line_start_(1 - static_cast<std::int64_t>(start.col)) {}
 
@@ -174,16 +178,19 @@ void Lexer::lex(Token& t) {
 // A name or a number: a run of regular characters.
 void Lexer::lex_run(Token& t) {
     const char* begin = p_;
-    for (;;) {
-        while (class_of(*p_) == Regular && p_ < end_) {
+    do {
+        while (class_of(*p_) == Regular && p_ < end_ && p_ - begin < max_run) {
             ++p_;
         }
-        if (p_ < end_ || static_cast<std::size_t>(p_ - begin) > max_run || !refill(begin)) {
-            break;
-        }
-    }
+    } while (p_ == end_ && p_ - begin < max_run && refill(begin));
     token_begin_ = begin;
     t.text.assign(begin, p_);
+    if (p_ - begin == max_run) {
+        skip_run();
+        t.kind = TokenKind::Bad;
+        t.reason = "too long a name or number";
+        return;
+    }
     if (!starts_number(*begin)) {
         t.kind = TokenKind::Name;
         return;
@@ -197,6 +204,14 @@ void Lexer::lex_run(Token& t) {
     t.kind = TokenKind::Number;
     t.number = to_double(d);
     t.is_integer = d.is_integer;
+}
+
+void Lexer::skip_run() {
+    do {
+        while (class_of(*p_) == Regular && p_ < end_) {
+            ++p_;
+        }
+    } while (p_ == end_ && refill());
 }
 
 void Lexer::lex_string(Token& t) {
@@ -229,8 +244,8 @@ void Lexer::lex_string(Token& t) {
 // Backslash sequences, ri.md 2.2.
 void Lexer::lex_escape(Token& t) {
     const char* begin = p_;
-    if (end_ - p_ < 4) {
-        refill(begin); // up to three octal digits follow
+    while (end_ - p_ < 4 && refill(begin)) {
+        // up to three octal digits follow the backslash
     }
     ++p_;
     if (p_ == end_) {
@@ -290,51 +305,59 @@ bool Lexer::array_holds_strings() {
     return skip_white() && *p_ == '"';
 }
 
-// The tight loop: numbers, blanks and line ends straight from the block. Everything else, and what
-// a block boundary may cut, goes through lex().
+// The tight loop: plain numbers, blanks and line ends straight from the block. Everything else, and
+// what a block boundary may cut, goes through lex(). store(value, text): text is the number as
+// written, with a delimiter behind it.
 template <class Store> bool Lexer::read_numbers(Store store) {
     for (;;) {
-        while (p_ < end_) {
-            const CharClass c = class_of(*p_);
+        const char* p = p_;
+        while (p < end_) {
+            const CharClass c = class_of(*p);
             if (c == White) {
-                ++p_;
+                ++p;
             } else if (c == LineEnd) {
+                p_ = p;
                 newline();
-            } else if (starts_number(*p_)) {
-                const Decimal d = scan_decimal(p_);
-                // At the sentinel the number may go on in the next block.
-                if (!d.end || d.end == end_ || class_of(*d.end) == Regular) {
+                p = p_;
+            } else {
+                const PlainNumber n = scan_plain(p);
+                // At the end of the block the number may go on in the next one.
+                if (!n.end || n.end >= end_ || class_of(*n.end) == Regular) {
                     break;
                 }
-                store(d, p_);
-                p_ = d.end;
-            } else {
-                break;
+                store(n.value, p);
+                p = n.end;
             }
         }
+        p_ = p;
         lex(token_);
         if (token_.kind != TokenKind::Number) {
             return token_.kind == TokenKind::ArrayEnd;
         }
-        // One number the slow way; its text is still there.
-        const std::string text = token_.text;
-        store(scan_decimal(text.c_str()), nullptr);
+        store(token_.number, token_.text.c_str());
     }
 }
 
 bool Lexer::read_floats(std::vector<float>& out) {
-    return read_numbers([&](const Decimal& d, const char*) { out.push_back(to_float(d)); });
+    return read_numbers([&](double value, const char* text) {
+        out.push_back(rounds_once(value) ? static_cast<float>(value)
+                                         : to_float(scan_decimal(text)));
+    });
 }
 
 bool Lexer::read_doubles(std::vector<double>& out) {
-    return read_numbers([&](const Decimal& d, const char*) { out.push_back(to_double(d)); });
+    return read_numbers([&](double value, const char*) { out.push_back(value); });
 }
 
 bool Lexer::read_ints(std::vector<std::int32_t>& out, IntTrouble& trouble) {
-    return read_numbers([&](const Decimal& d, const char* at) {
+    return read_numbers([&](double value, const char* text) {
         bool inexact = false, overflow = false;
-        out.push_back(to_int(to_double(d), inexact, overflow));
-        const base::SourcePos pos = at ? place(at) : token_.pos;
+        out.push_back(to_int(value, inexact, overflow));
+        if (!inexact && !overflow) {
+            return;
+        }
+        const bool in_block = text >= buffer_.data() && text < end_;
+        const base::SourcePos pos = in_block ? place(text) : token_.pos;
         if (inexact && trouble.inexact.line == 0) {
             trouble.inexact = pos;
         }

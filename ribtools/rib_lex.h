@@ -73,6 +73,7 @@ public:
 private:
     void lex(Token& t);
     void lex_run(Token& t);
+    void skip_run();
     void lex_string(Token& t);
     void lex_escape(Token& t);
     void lex_binary(Token& t);

@@ -183,14 +183,24 @@ Parser::Outcome Parser::finish(const RequestRow& table_row, bool taken_anyway) {
     if (token().kind == TokenKind::Name || token().kind == TokenKind::End) {
         return Outcome::Ok;
     }
-    const bool bad = token().kind == TokenKind::Bad;
-    const std::string expected_args =
-        table_row.params == ParamUse::None
-            ? "after its arguments (" + std::string(table_row.arg_names) + ")"
-            : "after its parameter list";
-    error(base::Severity::Error, base::Code::Syntax, token().pos,
-          std::string(table_row.name) + ": " + (bad ? "" : "surplus ") + describe(token()) + " " +
-              expected_args + (taken_anyway ? "; ignored" : "; request skipped"));
+    const base::SourcePos pos = token().pos;
+    std::string what = describe(token());
+    std::size_t numbers = 0;
+    for (; token().kind == TokenKind::Number; lexer_.advance()) {
+        ++numbers;
+    }
+    if (numbers > 0) {
+        what = std::to_string(numbers) + " surplus number" + (numbers > 1 ? "s" : "");
+    } else if (token().kind != TokenKind::Bad) {
+        what = "surplus " + what;
+    }
+    const std::string behind = table_row.params != ParamUse::None ? "its parameter list"
+                               : table_row.arg_names.empty()
+                                   ? "a request without arguments"
+                                   : "its arguments (" + std::string(table_row.arg_names) + ")";
+    error(base::Severity::Error, base::Code::Syntax, pos,
+          std::string(table_row.name) + ": " + what + " after " + behind +
+              (taken_anyway ? "; ignored" : "; request skipped"));
     skip_to_name();
     return taken_anyway ? Outcome::Ok : Outcome::Skip;
 }

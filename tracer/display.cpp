@@ -373,10 +373,27 @@ int FilePicture::count(ChannelRole role) const {
     return static_cast<int>(std::ranges::count(channels, role, &FileChannel::role));
 }
 
-PictureInfo picture_info(const Camera& camera, const Exposure& exposure) {
+PictureInfo picture_info(const Camera& camera) {
     const Raster& r = camera.raster();
-    return {r.xres,  r.yres, r.pixel_aspect, camera.camera_from_world(), camera.ndc_from_world(),
-            exposure};
+    PictureInfo info;
+    info.xres = r.xres;
+    info.yres = r.yres;
+    info.pixel_aspect = r.pixel_aspect;
+    info.camera_from_world = camera.camera_from_world();
+    // Camera's NDC spans the picture, which FrameAspectRatio may make smaller than the frame.
+    const base::Mat4 frame_from_picture =
+        base::Mat4::scale({static_cast<double>(r.picture.width()) / r.xres,
+                           static_cast<double>(r.picture.height()) / r.yres, 1});
+    info.ndc_from_world = frame_from_picture * camera.ndc_from_world();
+    const auto in_plane = [&](double x, double y) {
+        const Camera::Ray ray = camera.pinhole_ray(x, y);
+        return camera.perspective() ? ray.direction / ray.direction.z : ray.origin;
+    };
+    const base::V3d left = in_plane(0, r.yres / 2.0), right = in_plane(r.xres, r.yres / 2.0);
+    info.window_center[0] = (left.x + right.x) / 2;
+    info.window_center[1] = (left.y + right.y) / 2;
+    info.window_width = std::fabs(right.x - left.x);
+    return info;
 }
 
 rib::Display default_display(std::string file, std::string mode) {

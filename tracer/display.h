@@ -30,10 +30,12 @@ enum class DisplayResult : std::uint8_t {
 struct PictureInfo {
     int xres = 0, yres = 0;
     double pixel_aspect = 1;
-    base::Mat4 camera_from_world, ndc_from_world;
-    Exposure exposure;
+    base::Mat4 camera_from_world;
+    base::Mat4 ndc_from_world; // 0..1 over the whole frame: xres by yres pixels
+    // The frame in the plane z = 1 of the camera (orthographic: anywhere): centre, and width in x.
+    double window_center[2] = {0, 0}, window_width = 1;
 };
-[[nodiscard]] PictureInfo picture_info(const Camera& camera, const Exposure& exposure);
+[[nodiscard]] PictureInfo picture_info(const Camera& camera);
 
 // Writes the image to the file the request names. The image is exposed and has been through the
 // imager.

@@ -14,6 +14,7 @@
 #include <OpenEXR/ImfStringAttribute.h>
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <limits>
 #include <stdexcept>
@@ -87,7 +88,12 @@ Imf::PixelType pixel_type(const FilePicture& p, const FileChannel& c) {
 Imf::Header make_header(const FilePicture& p, std::string& note) {
     const Imath::Box2i frame({0, 0}, {p.info.xres - 1, p.info.yres - 1});
     const Imath::Box2i data({p.pixels.x0, p.pixels.y0}, {p.pixels.x1 - 1, p.pixels.y1 - 1});
-    Imf::Header header(frame, data, static_cast<float>(p.info.pixel_aspect));
+    const auto number = [](double x) {
+        return std::isfinite(x) ? static_cast<float>(x) : 0.0f; // odd projections
+    };
+    Imf::Header header(frame, data, number(p.info.pixel_aspect),
+                       {number(p.info.window_center[0]), number(p.info.window_center[1])},
+                       number(p.info.window_width));
     header.compression() = compression_of(p, note);
     Imf::addWorldToCamera(header, matrix(p.info.camera_from_world));
     Imf::addWorldToNDC(header, matrix(p.info.ndc_from_world));

@@ -442,15 +442,20 @@ TEST_F(DisplayTest, FailureHalfwayLeavesNothing) {
 TEST(Picture, InfoFromCamera) {
     rib::Scene scene;
     scene.options.projection = "perspective";
+    scene.options.frame_aspect =
+        1; // 480 of 640 columns; fov 90: the picture spans -1 to 1 at z = 1
     scene.camera_from_world.keys[0].m = base::Mat4::translate({0, 0, 5});
     base::Diag diag;
-    const trace::Camera camera(scene, diag);
-    const trace::PictureInfo info = trace::picture_info(camera, {});
+    const trace::PictureInfo info = trace::picture_info(trace::Camera(scene, diag));
+    constexpr double eps = 1e-12; // a few double operations
     EXPECT_EQ(info.xres, 640);
     const base::V3d centre = base::point(info.ndc_from_world, {0, 0, 0});
-    EXPECT_NEAR(centre.x, 0.5, 1e-12);
-    EXPECT_NEAR(centre.y, 0.5, 1e-12);
+    EXPECT_NEAR(centre.x, 240.0 / 640, eps);
+    EXPECT_NEAR(centre.y, 0.5, eps);
     EXPECT_EQ(info.camera_from_world.m[3][2], 5);
+    EXPECT_NEAR(info.window_width, 640.0 / 240, eps);
+    EXPECT_NEAR(info.window_center[0], -1 + 320.0 / 240, eps);
+    EXPECT_NEAR(info.window_center[1], 0, eps);
 }
 
 } // namespace

@@ -142,7 +142,7 @@ constexpr std::pair<const char*, float> filters[] = {{"box", 1},
                                                      {"bessel", 6},
                                                      {"lanczos", 6},
                                                      {"box", 0.2f},
-                                                     {"gaussian", 31},
+                                                     {"gaussian", 13},
                                                      {"separable-catmull-rom", 4}};
 
 TEST(Film, ConstantsReproduce) {

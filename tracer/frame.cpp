@@ -204,8 +204,8 @@ FrameResult write_displays(const rib::Scene& scene, const Frame& frame,
         }
         const Exposure exposure = exposure_of(scene.options, display);
         const Image& picture = developer.developed(exposure, &display == &displays.back());
-        const DisplayResult written = write_display(
-            display, scene.options, picture, picture_info(frame.camera(), exposure), tools.diag);
+        const DisplayResult written = write_display(display, scene.options, picture,
+                                                    picture_info(frame.camera()), tools.diag);
         result = written == DisplayResult::Failed ? FrameResult::Failed : result;
     }
     return result;

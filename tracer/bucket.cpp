@@ -40,6 +40,8 @@ BucketRenderer::BucketRenderer(const FrameContext& frame, const Camera& camera,
                                const Sampler& sampler, const ShadingClasses& classes,
                                const VisibilityOptions& options)
     : frame_(frame), camera_(camera), sampler_(sampler), classes_(classes), options_(options),
+      opaque_counts_for_depth_(
+          *std::max_element(options.depth_from.begin(), options.depth_from.end()) <= 1),
       shader_(frame, camera, classes, thread_) {}
 
 void BucketRenderer::render(std::size_t bucket, Film& film) {
@@ -81,6 +83,11 @@ bool BucketRenderer::is_matte(const geo::Hit& hit) const {
     return classes_.has_matte() && classes_.facts(frame_.world->binding(hit).attributes).is_matte;
 }
 
+bool BucketRenderer::is_opaque(const Shade& shade) const {
+    return shade.opacity[0] == 1 && shade.opacity[1] == 1 && shade.opacity[2] == 1 &&
+           opaque_counts_for_depth_;
+}
+
 bool BucketRenderer::composite(Sample& sample, float& z, std::array<float, 3>& transmitted,
                                const geo::Hit& hit, const Shade& shade, float z_hit) const {
     const float shown = is_matte(hit) ? 0.0f : 1.0f;
@@ -101,13 +108,20 @@ bool BucketRenderer::composite(Sample& sample, float& z, std::array<float, 3>& t
 void BucketRenderer::composite_first(SampleBuffer& samples) {
     shades_.resize(block_.count);
     const std::span<const geo::Hit> hits(hits_.data(), block_.count);
-    shader_.shade({camera_packets_, {}, block_.seed, 0}, hits, shades_);
+    shader_.shade({camera_packets_, {}, block_.seed, {}, 0}, hits, shades_);
+    const bool may_be_matte = classes_.has_matte();
     for (std::uint32_t i = 0; i < hits.size(); ++i) {
         if (!hits[i].valid()) {
             continue;
         }
-        std::array<float, 3> transmitted = {1, 1, 1};
         const float z = ray_z(camera_packets_[i / lanes], i % lanes, hits[i].t);
+        if (is_opaque(shades_[i]) && !may_be_matte) { // what follows, for nearly all samples
+            std::copy_n(shades_[i].color, 3, samples.samples[i].color);
+            std::copy_n(shades_[i].opacity, 3, samples.samples[i].opacity);
+            samples.z[i] = z;
+            continue;
+        }
+        std::array<float, 3> transmitted = {1, 1, 1};
         if (composite(samples.samples[i], samples.z[i], transmitted, hits[i], shades_[i], z)) {
             behind_.push_back({i, hits[i].t, hits[i], transmitted});
         }
@@ -116,12 +130,14 @@ void BucketRenderer::composite_first(SampleBuffer& samples) {
 
 void BucketRenderer::composite_behind(SampleBuffer& samples) {
     shades_.resize(std::max(shades_.size(), behind_.size()));
-    behind_rays_.clear();
-    for (const Behind& b : behind_) {
-        behind_rays_.push_back(b.ray);
-    }
     const std::span<const geo::Hit> hits(hits_.data(), behind_.size());
-    shader_.shade({camera_packets_, behind_rays_, block_.seed, layer_}, hits, shades_);
+    behind_rays_.clear();
+    behind_t_.clear();
+    for (std::size_t i = 0; i < behind_.size(); ++i) {
+        behind_rays_.push_back(behind_[i].ray);
+        behind_t_.push_back(behind_[i].t + hits[i].t);
+    }
+    shader_.shade({camera_packets_, behind_rays_, block_.seed, behind_t_, layer_}, hits, shades_);
     next_.clear();
     for (std::size_t i = 0; i < behind_.size(); ++i) {
         Behind b = behind_[i];

@@ -48,12 +48,14 @@ private:
     bool composite(Sample& sample, float& z, std::array<float, 3>& transmitted, const geo::Hit& hit,
                    const Shade& shade, float z_hit) const;
     [[nodiscard]] bool is_matte(const geo::Hit& hit) const;
+    [[nodiscard]] bool is_opaque(const Shade& shade) const;
 
     const FrameContext& frame_;
     const Camera& camera_;
     const Sampler& sampler_;
     const ShadingClasses& classes_;
     VisibilityOptions options_;
+    bool opaque_counts_for_depth_; // a zthreshold above 1 is never reached
     ThreadState thread_;
     HitShader shader_;
 
@@ -64,6 +66,7 @@ private:
     std::vector<Shade> shades_;
     std::vector<Behind> behind_, next_;
     std::vector<std::uint32_t> behind_rays_;
+    std::vector<float> behind_t_;
     std::uint32_t layer_ = 0;
 };
 

@@ -75,7 +75,7 @@ std::size_t HitShader::equal_values(const ShadingClass& c, std::span<std::uint32
 }
 
 void HitShader::bind_overrides(const ShadingClass& c, rt::ShadeBatch& batch) {
-    const std::span<const geo::Hit> hits(batch_.hits.data(), batch.count());
+    const std::span<const geo::Hit> hits = subject_hits_;
     for (const ParamOverride& o : c.overrides) {
         const sl_param& param = c.surface->object().params[o.param];
         const rib::Param* variable = overriding(c, o, hits.front());

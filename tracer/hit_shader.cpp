@@ -153,7 +153,7 @@ void HitShader::shade_batch(const Group& group, std::span<const std::uint32_t> m
     const ShadingClass& c = classes_[group.shading_class];
     gather(c, members);
     ++thread_.batch_serial;
-    const BatchSubject subject{{batch_.hits.data(), members.size()}, &c.lights, group.attributes};
+    const BatchSubject subject{subject_hits_, &c.lights, group.attributes};
     Execution surface(frame_, *c.surface);
     surface.thread = &thread_;
     surface.batch = &thread_.surface;
@@ -166,12 +166,15 @@ void HitShader::shade_batch(const Group& group, std::span<const std::uint32_t> m
 }
 
 void HitShader::gather(const ShadingClass& c, std::span<const std::uint32_t> members) {
+    gather_hits(c, members);
     const std::uint64_t needed =
         c.surface->object().needed | (c.atmosphere != nullptr ? c.atmosphere->object().needed : 0);
     const bool needs_footprint = (needed & (bit(SL_VAR_du) | bit(SL_VAR_dv))) != 0 ||
                                  (c.surface->object().facts & SL_FACT_area_operators) != 0;
+    if (!needs_footprint && (needed & bit(SL_VAR_I)) == 0) {
+        return; // nothing else depends on the ray
+    }
     for (std::size_t i = 0; i < members.size(); ++i) {
-        const geo::Hit& hit = batch_.hits[i] = hits_[members[i]];
         const std::uint32_t ray = ray_of(members[i]);
         const geo::RayPacket& packet = rays_.packets[ray / geo::RayPacket::size];
         const std::size_t lane = ray % geo::RayPacket::size;
@@ -179,14 +182,28 @@ void HitShader::gather(const ShadingClass& c, std::span<const std::uint32_t> mem
         batch_.oz[i] = packet.oz[lane];
         batch_.dx[i] = packet.dx[lane], batch_.dy[i] = packet.dy[lane],
         batch_.dz[i] = packet.dz[lane];
-        batch_.footprint[i] = 0;
         if (needs_footprint) {
+            const geo::Hit& hit = subject_hits_[i];
             const float spacing_px =
                 classes_.facts(frame_.world->binding(hit).attributes).spacing_px;
-            batch_.footprint[i] =
-                camera_.footprint(packet.oz[lane] + hit.t * packet.dz[lane], spacing_px);
+            const float z =
+                packet.oz[lane] + (rays_.t.empty() ? hit.t : rays_.t[members[i]]) * packet.dz[lane];
+            batch_.footprint[i] = camera_.footprint(z, spacing_px);
         }
     }
+}
+
+// Neighbouring rays mostly meet one class: then the hits are used where they are.
+void HitShader::gather_hits(const ShadingClass& c, std::span<const std::uint32_t> members) {
+    const bool in_order = c.overrides.empty(); // else sorted by value
+    if (in_order && members.back() - members.front() + 1 == members.size()) {
+        subject_hits_ = hits_.subspan(members.front(), members.size());
+        return;
+    }
+    for (std::size_t i = 0; i < members.size(); ++i) {
+        batch_.hits[i] = hits_[members[i]];
+    }
+    subject_hits_ = {batch_.hits.data(), members.size()};
 }
 
 // Ci and Oi start as Cs and Os ([R] of sl.md 5.2), so the geometry is asked for those whatever the
@@ -209,8 +226,8 @@ void HitShader::run_surface(const ShadingClass& c, Execution& execution,
     planes.var[SL_VAR_Cs] = own_Cs ? planes.var[SL_VAR_Cs] : Ci;
     planes.var[SL_VAR_Os] = own_Os ? planes.var[SL_VAR_Os] : Oi;
     const std::uint64_t needed = c.surface->object().needed | bit(SL_VAR_Cs) | bit(SL_VAR_Os);
-    frame_.world->fill({batch_.hits.data(), count}, incident(count), needed & geometry_variables,
-                       stride, planes, batch.aux_points_u(), batch.aux_points_v());
+    frame_.world->fill(subject_hits_, incident(count), needed & geometry_variables, stride, planes,
+                       batch.aux_points_u(), batch.aux_points_v());
     if (own_Cs) {
         std::copy_n(planes.var[SL_VAR_Cs], 3 * stride, Ci);
     }
@@ -240,9 +257,8 @@ void HitShader::run_atmosphere(const ShaderEntry& shader, const Execution& surfa
     execution.batch = &batch;
     execution.subject = surface.subject;
     execution.surface = &surface;
-    frame_.world->fill({batch_.hits.data(), count}, incident(count),
-                       shader.object().needed & geometry_variables, batch.stride(), batch.points(),
-                       nullptr, nullptr);
+    frame_.world->fill(subject_hits_, incident(count), shader.object().needed & geometry_variables,
+                       batch.stride(), batch.points(), nullptr, nullptr);
     fill_own_variables(batch, count);
     fill_seeds(batch, members);
     const sl_points& planes = batch.points();

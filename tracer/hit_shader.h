@@ -26,7 +26,9 @@ struct ShadingRays {
     std::span<const geo::RayPacket> packets;
     std::span<const std::uint32_t> ray;
     std::span<const std::uint32_t> seed; // by ray
-    std::uint32_t layer = 0;             // surfaces met before on these rays
+    // Distance of hit i along that ray; empty: the hit's own t.
+    std::span<const float> t;
+    std::uint32_t layer = 0; // surfaces met before on these rays
 };
 
 struct Shade {
@@ -73,6 +75,7 @@ private:
     void shade_group(const Group& group);
     void shade_batch(const Group& group, std::span<const std::uint32_t> members);
     void gather(const ShadingClass& c, std::span<const std::uint32_t> members);
+    void gather_hits(const ShadingClass& c, std::span<const std::uint32_t> members);
     void run_surface(const ShadingClass& c, Execution& execution,
                      std::span<const std::uint32_t> members);
     void run_atmosphere(const ShaderEntry& shader, const Execution& surface,
@@ -104,6 +107,7 @@ private:
 
     ShadingRays rays_;
     std::span<const geo::Hit> hits_;
+    std::span<const geo::Hit> subject_hits_; // of the batch in work
     std::span<Shade> out_;
     std::vector<Group> groups_;
     std::vector<std::uint32_t> group_of_class_; // no_id: none yet

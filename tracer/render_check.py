@@ -1,0 +1,143 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The program render from outside: exit codes, interruption, the same bytes whatever the threads.
+
+usage: render_check.py path/to/render. Scenes use the built-in default surface, so no shader is needed.
+"""
+
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+RENDER = os.path.abspath(sys.argv.pop(1))
+
+SCENE = """
+Format {size} {size} 1
+PixelSamples {samples} {samples}
+Display "{name}" "file" "rgba"
+Projection "perspective" "fov" [40]
+WorldBegin
+  Translate 0 0 5
+  Color [1 .5 .2] Sphere 1 -1 1 360
+  Translate .5 .5 -1 Opacity [.5 .5 .5] Sphere .5 -.5 .5 360
+WorldEnd
+"""
+
+
+class Render(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.environment = dict(os.environ, HOME=self.folder.name)
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def path(self, name):
+        return os.path.join(self.folder.name, name)
+
+    def write(self, name, text):
+        with open(self.path(name), "w", encoding="utf-8") as file:
+            file.write(text)
+
+    def start(self, *arguments, **options):
+        return subprocess.Popen([RENDER, *arguments], cwd=self.folder.name, env=self.environment,
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options)
+
+    def run_render(self, *arguments, text=None):
+        process = self.start(*arguments, stdin=subprocess.PIPE)
+        output, messages = process.communicate(text, timeout=100)
+        return process.returncode, output, messages
+
+    def files(self):
+        return sorted(name for name in os.listdir(self.folder.name) if not name.startswith(".cache"))
+
+    def scene(self, name="a.tif", size=40, samples=2):
+        return SCENE.format(name=name, size=size, samples=samples)
+
+    def bytes_of(self, name):
+        with open(self.path(name), "rb") as file:
+            return file.read()
+
+    def test_exit_codes(self):
+        self.write("good.rib", self.scene())
+        self.assertEqual(self.run_render("good.rib")[0], 0)
+        self.assertEqual(self.files(), ["a.tif", "good.rib"])
+        code, _, messages = self.run_render("-", text=self.scene() + "Sphere 1 2")
+        self.assertEqual(code, 1, messages)
+        code, _, messages = self.run_render("-bogus")
+        self.assertEqual(code, 2)
+        self.assertIn("-bogus", messages)
+        self.assertEqual(self.run_render("nowhere.rib")[0], 3)
+        self.write("nodir.rib", self.scene("no/such/place.tif"))
+        self.assertEqual(self.run_render("nodir.rib")[0], 3)
+
+    def test_strict_counts_warnings(self):
+        self.write("warn.rib", 'Option "nonsense" "uniform float x" [1]\n' + self.scene())
+        self.assertEqual(self.run_render("warn.rib")[0], 0)
+        self.assertEqual(self.run_render("--strict", "warn.rib")[0], 1)
+
+    def test_missing_shader_renders_anyway(self):
+        code, _, messages = self.run_render("-", text=self.scene().replace("WorldBegin", 'WorldBegin Surface "nosuch"'))
+        self.assertEqual(code, 1)
+        self.assertIn("nosuch", messages)
+        self.assertIn("a.tif", self.files())
+
+    def test_same_bytes_for_any_threads_and_buckets(self):
+        pictures = []
+        for threads, bucket in (("1", "16 16"), ("2", "16 16"), ("3", "7 9")):
+            self.write("s.rib", f'Option "limits" "bucketsize" [{bucket}]\n' + self.scene())
+            self.assertEqual(self.run_render("-t", threads, "s.rib")[0], 0)
+            pictures.append(self.bytes_of("a.tif"))
+        self.assertEqual(pictures[0], pictures[1])
+        self.assertEqual(pictures[0], pictures[2])
+
+    def test_interrupt_leaves_no_file(self):
+        for stop in (signal.SIGINT, signal.SIGTERM):
+            self.write("long.rib", self.scene(size=2000, samples=16))
+            process = self.start("--progress=lines", "-t", "1", "long.rib")
+            process.stderr.readline()  # the first tenth is done: it renders
+            process.send_signal(stop)
+            started = time.monotonic()
+            process.communicate(timeout=60)
+            self.assertEqual(process.returncode, -stop)
+            self.assertLess(time.monotonic() - started, 50)
+            self.assertEqual(self.files(), ["long.rib"])
+
+    def test_output_switch_and_default_name(self):
+        self.write("two.rib", "FrameBegin 3\n" + self.scene() + "FrameEnd\nFrameBegin 4\n" + self.scene() + "FrameEnd\n")
+        self.assertEqual(self.run_render("-o", "f.##.png", "-frames", "4", "two.rib")[0], 0)
+        self.assertEqual(self.files(), ["f.04.png", "two.rib"])
+        self.write("plain.rib", self.scene().replace("Display", "#Display"))
+        self.assertEqual(self.run_render("plain.rib")[0], 0)
+        self.assertIn("plain.tif", self.files())
+
+    def test_safe_keeps_existing_pictures(self):
+        self.write("good.rib", self.scene())
+        self.write("a.tif", "mine")
+        code, _, messages = self.run_render("-safe", "good.rib")
+        self.assertEqual(code, 0)
+        self.assertIn("skipped", messages)
+        self.assertEqual(self.bytes_of("a.tif"), b"mine")
+
+    def test_rendribrc_and_option_come_first(self):
+        self.write(".rendribrc", "Format 24 24 1\nPixelSamples 1 1\n")
+        scene = self.scene().replace("Format 40 40 1", "").replace("PixelSamples", "#")
+        self.write("s.rib", scene)
+        self.assertEqual(self.run_render("-o", "rc.tif", "s.rib")[0], 0)
+        self.assertEqual(self.run_render("-o", "option.tif", "-option", "Format 40 40 1", "s.rib")[0], 0)
+        self.assertLess(len(self.bytes_of("rc.tif")), len(self.bytes_of("option.tif")))
+
+    def test_statistics(self):
+        self.write("good.rib", self.scene())
+        code, _, messages = self.run_render("--stats", "--stats-json", "s.json", "good.rib")
+        self.assertEqual(code, 0)
+        self.assertIn("camera rays", messages)
+        self.assertIn('"rays_camera"', self.bytes_of("s.json").decode())
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=0)

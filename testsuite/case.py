@@ -9,7 +9,7 @@ expectation cannot pass unnoticed.
 import re
 
 RUN_KEYS = {"run", "exit", "append"}
-ONE_KEYS = {"rule", "spec", "timeout", "memory", "needs", "scene"}
+ONE_KEYS = {"rule", "spec", "timeout", "memory", "needs", "scene", "later"}
 MANY_KEYS = {"expect", "let", "message", "output", "quiet"}
 KEY_LINE = re.compile(r"^([a-z]+)(?: ([A-Za-z_]\w*))?:(?: (.*)|)$")
 

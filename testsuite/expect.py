@@ -8,11 +8,10 @@ worst component. Expectations come from our own case files and are as trusted as
 
 import math
 import os
-import re
 
 import pictures
 
-RELATION = re.compile(r"^(.*?\S)\s+(==|!=|<=|>=|<|>)\s+(\S.*?)(?:\s+\+-\s+(\S.*))?$")
+RELATIONS = ("==", "!=", "<=", ">=", "<", ">")
 
 
 class ExpectError(Exception):
@@ -234,6 +233,35 @@ def compare(left, relation, right, tolerance):
     return all(order(a, b) for a, b in zip(left, right))
 
 
+def split_outside(text, separators):
+    """(before, separator, after) at the first separator outside brackets and strings, or None."""
+    depth, quote = 0, ""
+    for i, letter in enumerate(text):
+        if quote:
+            quote = "" if letter == quote else quote
+        elif letter in "'\"":
+            quote = letter
+        elif letter in "([{":
+            depth += 1
+        elif letter in ")]}":
+            depth -= 1
+        elif letter == " " and depth == 0:
+            word = text[i + 1:].partition(" ")[0]
+            if word in separators:
+                return text[:i].strip(), word, text[i + 1 + len(word):].strip()
+    return None
+
+
+def split_claim(claim):
+    """(left, relation, right, tolerance or "")"""
+    sides = split_outside(claim, RELATIONS)
+    if sides is None:
+        raise ExpectError(f"'{claim}' has no relation ({' '.join(RELATIONS)})")
+    left, relation, right = sides
+    bounds = split_outside(right, ("+-",))
+    return (left, relation, bounds[0], bounds[2]) if bounds else (left, relation, right, "")
+
+
 def shorten(value):
     if isinstance(value, tuple):
         return "(" + ", ".join(shorten(v) for v in value) + ")"
@@ -244,10 +272,7 @@ def shorten(value):
 def check(text, names):
     """None, or a sentence that says what was measured and what was expected."""
     claim, _, reason = text.partition(" | ")
-    match = RELATION.match(claim.strip())
-    if not match:
-        raise ExpectError(f"'{claim}' has no relation (== != < <= > >=)")
-    left_text, relation, right_text, tolerance_text = match.groups()
+    left_text, relation, right_text, tolerance_text = split_claim(claim.strip())
     if tolerance_text and not reason:
         raise ExpectError(f"'{claim}' has a tolerance without a reason (| reason)")
     functions = names["functions"]

@@ -162,11 +162,10 @@ class Runner:
         messages = [line for line in self.stderr if is_problem(line)]
         for _, pattern in self.case.many["message"]:
             pattern = self.mark_lines(pattern)
-            matching = [line for line in messages if re.search(pattern, line)]
-            if not matching:
+            if not any(re.search(pattern, line) for line in self.stderr):
                 raise Failure(f"no message matches /{pattern}/")
-            messages = [line for line in messages if line not in matching]
-        quiet = [pattern for _, pattern in self.case.many["quiet"]]
+            messages = [line for line in messages if not re.search(pattern, line)]
+        quiet = [self.mark_lines(pattern) for _, pattern in self.case.many["quiet"]]
         messages = [line for line in messages if not any(re.search(pattern, line) for pattern in quiet)]
         if messages:
             raise Failure(f"unexpected message: {messages[0]}")
@@ -199,6 +198,8 @@ class Runner:
                 raise Failure(f"used {peak_mb:.0f} MB, expected at most {limit}")
 
     def execute(self):
+        if "later" in self.case.values:
+            raise Skip(f"waits for {self.case.values['later']}")
         for name in self.case.values.get("needs", "").split():
             find_program(name, self.build)
         for _, text in self.case.runs():

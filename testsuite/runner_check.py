@@ -40,6 +40,7 @@ def check_head():
 
 def check_relations():
     names = expect.scope("/nowhere")
+    assert expect.split_claim("f(a == 1, '< x') <= 2 +- 3 - 1") == ("f(a == 1, '< x')", "<=", "2", "3 - 1")
     for good in ("1 == 1", "vec(1, 2) == vec(1, 2.05) +- 0.1 | because", "1 < 2", "vec(1, 2) >= 1", "'a' != 'b'"):
         assert expect.check(good, names) is None, good
     for wrong in ("1 == 2", "vec(1, 2) == vec(1, 2.2) +- 0.1 | because", "2 < 1", "vec(0, 2) >= 1",

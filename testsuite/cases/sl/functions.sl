@@ -35,7 +35,7 @@ surface functions()
     swap(a, b);
     CHECK("outputs", a * 10 + b, 21, 0)
     CHECK3("formal hides global", hides(point(1, 2, 3)), point(1, 2, 3), 0)
-    CHECK("nested calls", square(square(2 + s - s)), 16, 0)
+    CHECK("nested calls", square(square(2 + (s - s))), 16, 0)
     color c;
     c = a = 4;
     CHECK_COLOR("chained assignment", c, color(4, 4, 4), 0)

@@ -5,9 +5,11 @@
 // needs: slctell
 // run tell: slctell ../main/slctell_prints.slo
 // output: displacement.*slctell_prints
-// output: float.*Km.*0?\.25
-// output: string.*file.*mask
-// output: color.*tint
+// output: "Km".*uniform float
+// output: 0\.25$
+// output: "file".*uniform string
+// output: "mask"
+// output: "tint".*varying color
 displacement slctell_prints(float Km = .25; uniform string file = "mask"; varying color tint = color(1, .5, 0);)
 {
     P += Km * comp(tint, 0) * normalize(N);

@@ -13,8 +13,8 @@ namespace {
 
 using Args = std::vector<Value>&;
 
-constexpr std::uint32_t primes[] = {0x8da6b343u, 0xd8163841u, 0xcb1ab31fu, 0xa7d69b35u};
-constexpr std::uint32_t channel_factors[] = {0x2c1b3c6du, 0x9d2c5681u, 0xe3779b97u};
+constexpr std::uint32_t primes[] = {0x8da6b343u, 0xb5297a4du, 0xcb1ab31fu, 0xa7d69b35u};
+constexpr std::uint32_t channel_factors[] = {0xe3779b97u, 0x9d2c5681u, 0x2c1b3c6du};
 constexpr double scales[] = {0.094, 0.2535, 0.468, 0.435}; // by dimension - 1
 
 // Coordinates and, for pnoise, periods (0: none), as the arguments give them.
@@ -24,8 +24,8 @@ struct Place {
 };
 
 std::uint32_t bits_of(double whole) {
-    const double limited = std::clamp(whole, -0x1p30, 0x1p30);
-    return static_cast<std::uint32_t>(static_cast<std::int64_t>(limited));
+    const bool fits = whole >= -0x1p31 && whole < 0x1p31;
+    return static_cast<std::uint32_t>(static_cast<std::int64_t>(fits ? whole : -0x1p31));
 }
 
 // The offset rounds to float as in the compiled code; large coordinates have no more.
@@ -47,9 +47,10 @@ double gradient(std::uint32_t h, const std::vector<double>& d) {
     case 2:
         return signed_by(h, 30, b31 ? d[1] : d[0]) + 2 * signed_by(h, 29, b31 ? d[0] : d[1]);
     case 3: {
-        const double u = b31 ? d[1] : d[0];
-        const double v = b30 && b29 ? (b31 ? d[0] : d[1]) : d[2];
-        return signed_by(h, 28, u) + signed_by(h, 27, v);
+        const double inclined = signed_by(h, 28, 0.822598 * d[b29 ? 1 : 0]) + 1.150362 * d[2];
+        const double diagonal =
+            0.997497 * (signed_by(h, 29, d[0]) + signed_by(h, 28, d[1])) + 0.1 * d[2];
+        return signed_by(h, 31, b30 ? diagonal : inclined);
     }
     default: {
         const double u = b31 && b30 ? d[1] : d[0];
@@ -89,7 +90,6 @@ double noise_at(const Place& p, std::size_t channel) {
             weight *= upper ? w : 1 - w;
             offset[axis] = upper ? f - 1 : f;
         }
-        h ^= h >> 15;
         sum += weight * gradient(h * channel_factors[channel], offset);
     }
     const double value = 0.5 + scales[n - 1] * sum;
@@ -109,7 +109,6 @@ double cell_at(const Place& p, std::size_t channel) {
             axis == 0 ? 0x7f4a7c15u * static_cast<std::uint32_t>(p.dimensions()) : 0;
         h ^= bits_of(std::floor(p.at[axis])) * primes[axis] + seed;
     }
-    h ^= h >> 15;
     constexpr std::uint32_t offsets[] = {0, 0x9e3779b9u, 0x3c6ef372u};
     h += offsets[channel];
     h ^= h >> 16;

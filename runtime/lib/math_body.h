@@ -115,9 +115,9 @@ SL_INLINE F FN(head_)(F x) { /* upper 12 bits: products of two heads are exact *
     return FLOAT(BITS(x) & (int)0xfffff000);
 }
 
-/* asin of |x| in two parts, head + tail, for acos too. Above 1/2 they give r with asin |x| = pi/2 - 2 r: there
- * r = asin sqrt(z), and the root's own rounding goes into the tail. */
-SL_INLINE F FN(asin_parts_)(F x, F *tail, I *above) {
+/* asin of |x| in two parts, head + tail, for acos too. Above 1/2 they give r with asin |x| = pi/2 -
+ * 2 r: there r = asin sqrt(z), and the root's own rounding goes into the tail. */
+SL_INLINE F FN(asin_parts_)(F x, F* tail, I* above) {
     const F one = K(1);
     const F a0 = FN(abs)(x), a = SEL(LT(one, a0), one, a0);
     *above = LT(K(0.5f), a);

@@ -3,23 +3,25 @@
  * at 8 lanes tables cost 2.6 times as much (design.md 4). Complete definition, for independent
  * implementations:
  *
- * Lattice. Coordinate a: i = floor(a) limited to [-2^30, 2^30], f = a - floor(a) (rounded to
- * float), w = f^3 (f (6 f - 15) + 10), so the noise is twice continuously differentiable. pnoise
- * with period p: the lattice index of a corner is floor(a) mod p, that of its upper neighbour
- * (floor(a) + 1) mod p; p is rounded (floor(p + 1/2)) and limited to [1, 2^23]. Hash (32-bit
- * unsigned arithmetic) of a corner (i, j, k, l), D = number of dimensions: h = (i P0 + S_D) xor (j
- * P1) xor (k P2) xor (l P3),   h = h xor (h >> 15),   h = h C_c   for channel c = 0, 1, 2 P =
- * 8da6b343 d8163841 cb1ab31f a7d69b35,  S_D = 9e3779b9 D,  C = 2c1b3c6d 9d2c5681 e3779b97
- * (hexadecimal) Gradient times the offset (x, y, z, t) of the point from the corner; bN is bit N of
- * h: 1-D  +-(1 + b30 b29 b28 as a number) x,  minus if b31 2-D  u = b31 ? y : x, v the other:  (b30
- * ? -u : u) + 2 (b29 ? -v : v) 3-D  u = b31 ? y : x, v = b30 and b29 ? the other of x and y : z:
- * (b28 ? -u : u) + (b27 ? -v : v) 4-D  u = b31 and b30 ? y : x, v = b31 ? z : y, w = b31 or b30 ? t
- * : z, signs b29 b28 b27 Sum: corners blended linearly by w, first along x, then y, z, t. noise =
- * 1/2 + K_D sum, K = 0.094 0.2535 0.468 0.435; 4-D is limited to [0, 1] (only there could the sum
- * be larger). 1/2 exactly at lattice points. NaN, inf: 1/2. cellnoise: h of the cell as above but
- * with S_D = 7f4a7c15 D and without the last step, finished by h ^= h >> 16; h *= 85ebca6b; h ^= h
- * >> 13; h *= c2b2ae35; h ^= h >> 16 (MurmurHash3), value (h >> 8) 2^-24; channels 1 and 2 add
- * 9e3779b9 and 3c6ef372 to h before the finish. NaN, inf: 1/2.
+ * Lattice. Coordinate a: i = floor(a), or -2^31 where that is outside [-2^31, 2^31); f = a -
+ * floor(a) (rounded to float); w = f^3 (f (6 f - 15) + 10), so the noise is twice continuously
+ * differentiable. pnoise with period p: the index of a corner is floor(a) mod p, that of its upper
+ * neighbour (floor(a) + 1) mod p; p is rounded (floor(p + 1/2)) and limited to [1, 2^23]. Hash
+ * (32-bit unsigned arithmetic) of a corner (i, j, k, l), D = number of dimensions, for channel c =
+ * 0, 1, 2: h = ((i P0 + S_D) xor (j P1) xor (k P2) xor (l P3)) C_c P = 8da6b343 b5297a4d cb1ab31f
+ * a7d69b35,  S_D = 9e3779b9 D,  C = e3779b97 9d2c5681 2c1b3c6d (hexadecimal) Gradient times the
+ * offset (x, y, z, t) of the point from the corner; bN is bit N of h: 1-D  (1 + b30 b29 b28 as a
+ * number) x, negated if b31 2-D  u = b31 ? y : x, v the other:  (b30 ? -u : u) + 2 (b29 ? -v : v)
+ *   3-D  negated if b31; b30 = 0: (+-a, 0, b) for b29 = 0, (0, +-a, b) for b29 = 1, with the sign
+ * b28; b30 = 1: (+-d, +-d, e) with the signs b29, b28. a = 0.822598 b = 1.150362 d = 0.997497 e =
+ * 0.1: 16 vectors of length sqrt 2 without a preferred direction (the sum of g g^T is a multiple of
+ * the identity) 4-D  u = b31 and b30 ? y : x, v = b31 ? z : y, w = b31 or b30 ? t : z, signs b29
+ * b28 b27 Sum: corners blended linearly by w, first along x, then y, z, t. noise = 1/2 + K_D sum, K
+ * = 0.094 0.2535 0.468 0.435; |sum| in 3-D is at most 1.063, in 4-D the result is limited to [0,
+ * 1]. 1/2 exactly at lattice points. NaN, inf: 1/2. cellnoise: h of the cell as above but with S_D
+ * = 7f4a7c15 D and without C, for channels 1 and 2 plus 9e3779b9 and 3c6ef372, finished by h ^= h
+ * >> 16; h *= 85ebca6b; h ^= h >> 13; h *= c2b2ae35; h ^= h >> 16 (MurmurHash3); the value is (h >>
+ * 8) 2^-24. NaN, inf: 1/2.
  */
 
 /* --- lattice
@@ -27,22 +29,18 @@
  */
 
 #define NOISE_P0 0x8da6b343u
-#define NOISE_P1 0xd8163841u
+#define NOISE_P1 0xb5297a4du
 #define NOISE_P2 0xcb1ab31fu
 #define NOISE_P3 0xa7d69b35u
-#define NOISE_C0 0x2c1b3c6du
+#define NOISE_C0 0xe3779b97u
 #define NOISE_C1 0x9d2c5681u
-#define NOISE_C2 0xe3779b97u
+#define NOISE_C2 0x2c1b3c6du
 
 /* One axis: hashed indices of the two corners, offset from the lower one, blending weight. */
 typedef struct FN(axis_) {
     I lower, upper;
     F f, w;
 } FN(axis_);
-
-SL_INLINE I FN(lattice_)(F whole) {
-    return FN(int_of_f)(FN(greater_f)(FN(lesser_f)(whole, K(0x1p30f)), K(-0x1p30f)));
-}
 
 SL_INLINE F FN(fade_)(F f) {
     return f * f * f * (f * (f * 6.0f - 15.0f) + 10.0f);
@@ -51,7 +49,7 @@ SL_INLINE F FN(fade_)(F f) {
 SL_INLINE FN(axis_) FN(open_axis_)(F a, uint32_t prime, uint32_t seed) {
     const F whole = FN(floor)(a);
     FN(axis_) r;
-    r.lower = FN(add_i)(FN(mul_i)(FN(lattice_)(whole), prime), KI((int)seed));
+    r.lower = FN(add_i)(FN(mul_i)(FN(whole_of_f)(whole), prime), KI((int)seed));
     r.upper = FN(add_i)(r.lower, KI((int)prime));
     r.f = a - whole;
     r.w = FN(fade_)(r.f);
@@ -67,8 +65,8 @@ SL_INLINE FN(axis_) FN(closed_axis_)(F a, F period, uint32_t prime, uint32_t see
     low = SEL(LE(p, low), low - p, low);
     const F high = SEL(LE(p, low + 1.0f), zero, low + 1.0f);
     FN(axis_) r;
-    r.lower = FN(add_i)(FN(mul_i)(FN(lattice_)(low), prime), KI((int)seed));
-    r.upper = FN(add_i)(FN(mul_i)(FN(lattice_)(high), prime), KI((int)seed));
+    r.lower = FN(add_i)(FN(mul_i)(FN(whole_of_f)(low), prime), KI((int)seed));
+    r.upper = FN(add_i)(FN(mul_i)(FN(whole_of_f)(high), prime), KI((int)seed));
     r.f = a - whole;
     r.w = FN(fade_)(r.f);
     return r;
@@ -90,10 +88,6 @@ SL_INLINE F FN(scaled_)(F sum, float k) {
 /* --- corners: gradient times offset
  * ------------------------------------------------------------------------------- */
 
-SL_INLINE I FN(mix_hash_)(I h) {
-    return h ^ FN(shr_i)(h, 15);
-}
-
 SL_INLINE F FN(corner_1_)(I hash, uint32_t c, F x) {
     const I h = FN(mul_i)(hash, c);
     const F g = FN(float_of_i)(FN(shr_i)(h, 28) & 7) + 1.0f;
@@ -109,10 +103,8 @@ SL_INLINE F FN(corner_2_)(I hash, uint32_t c, F x, F y) {
 
 SL_INLINE F FN(corner_3_)(I hash, uint32_t c, F x, F y, F z) {
     const I h = FN(mul_i)(hash, c);
-    const F u = FN(select_sign_f)(h, y, x);
-    const F other = FLOAT(BITS(x) ^ BITS(y) ^ BITS(u));
-    const F v = FN(select_sign_f)(FN(shl_i)(h, 1) & FN(shl_i)(h, 2), other, z);
-    return FN(flip_)(h, 28, u) + FN(flip_)(h, 27, v);
+    const V g = FN(direction_)(FN(shr_i)(h, 28));
+    return FN(flip_)(h, 31, g.x * x + g.y * y + g.z * z);
 }
 
 SL_INLINE F FN(corner_4_)(I hash, uint32_t c, F x, F y, F z, F t) {
@@ -127,14 +119,14 @@ SL_INLINE F FN(corner_4_)(I hash, uint32_t c, F x, F y, F z, F t) {
  * ------------------------------------------------------------------------------ */
 
 SL_INLINE F FN(sum_1_)(FN(axis_) x, uint32_t c) {
-    const F a = FN(corner_1_)(FN(mix_hash_)(x.lower), c, x.f);
-    const F b = FN(corner_1_)(FN(mix_hash_)(x.upper), c, x.f - 1.0f);
+    const F a = FN(corner_1_)(x.lower, c, x.f);
+    const F b = FN(corner_1_)(x.upper, c, x.f - 1.0f);
     return FN(blend_)(x.w, a, b);
 }
 
 SL_INLINE F FN(row_2_)(FN(axis_) x, I hy, F y, uint32_t c) {
-    const F a = FN(corner_2_)(FN(mix_hash_)(x.lower ^ hy), c, x.f, y);
-    const F b = FN(corner_2_)(FN(mix_hash_)(x.upper ^ hy), c, x.f - 1.0f, y);
+    const F a = FN(corner_2_)(x.lower ^ hy, c, x.f, y);
+    const F b = FN(corner_2_)(x.upper ^ hy, c, x.f - 1.0f, y);
     return FN(blend_)(x.w, a, b);
 }
 
@@ -143,8 +135,8 @@ SL_INLINE F FN(sum_2_)(FN(axis_) x, FN(axis_) y, uint32_t c) {
 }
 
 SL_INLINE F FN(row_3_)(FN(axis_) x, I hyz, F y, F z, uint32_t c) {
-    const F a = FN(corner_3_)(FN(mix_hash_)(x.lower ^ hyz), c, x.f, y, z);
-    const F b = FN(corner_3_)(FN(mix_hash_)(x.upper ^ hyz), c, x.f - 1.0f, y, z);
+    const F a = FN(corner_3_)(x.lower ^ hyz, c, x.f, y, z);
+    const F b = FN(corner_3_)(x.upper ^ hyz, c, x.f - 1.0f, y, z);
     return FN(blend_)(x.w, a, b);
 }
 
@@ -159,8 +151,8 @@ SL_INLINE F FN(sum_3_)(FN(axis_) x, FN(axis_) y, FN(axis_) z, uint32_t c) {
 }
 
 SL_INLINE F FN(row_4_)(FN(axis_) x, I hash, F y, F z, F t, uint32_t c) {
-    const F a = FN(corner_4_)(FN(mix_hash_)(x.lower ^ hash), c, x.f, y, z, t);
-    const F b = FN(corner_4_)(FN(mix_hash_)(x.upper ^ hash), c, x.f - 1.0f, y, z, t);
+    const F a = FN(corner_4_)(x.lower ^ hash, c, x.f, y, z, t);
+    const F b = FN(corner_4_)(x.upper ^ hash, c, x.f - 1.0f, y, z, t);
     return FN(blend_)(x.w, a, b);
 }
 
@@ -294,24 +286,23 @@ SL_INLINE F FN(unit_of_hash_)(I h) { /* [0,1) in steps of 2^-24 */
 }
 
 SL_INLINE I FN(cell_)(F a, uint32_t prime) {
-    return FN(mul_i)(FN(lattice_)(FN(floor)(a)), prime);
+    return FN(mul_i)(FN(whole_of_f)(FN(floor)(a)), prime);
 }
 
 SL_INLINE I FN(cell_1_)(F x) {
-    return FN(mix_hash_)(FN(add_i)(FN(cell_)(x, NOISE_P0), KI(0x7f4a7c15)));
+    return FN(add_i)(FN(cell_)(x, NOISE_P0), KI(0x7f4a7c15));
 }
 SL_INLINE I FN(cell_2_)(F x, F y) {
     const I seeded = FN(add_i)(FN(cell_)(x, NOISE_P0), KI((int)(2 * 0x7f4a7c15u)));
-    return FN(mix_hash_)(seeded ^ FN(cell_)(y, NOISE_P1));
+    return seeded ^ FN(cell_)(y, NOISE_P1);
 }
 SL_INLINE I FN(cell_3_)(V p) {
     const I seeded = FN(add_i)(FN(cell_)(p.x, NOISE_P0), KI((int)(3 * 0x7f4a7c15u)));
-    return FN(mix_hash_)(seeded ^ FN(cell_)(p.y, NOISE_P1) ^ FN(cell_)(p.z, NOISE_P2));
+    return seeded ^ FN(cell_)(p.y, NOISE_P1) ^ FN(cell_)(p.z, NOISE_P2);
 }
 SL_INLINE I FN(cell_4_)(V p, F t) {
     const I seeded = FN(add_i)(FN(cell_)(p.x, NOISE_P0), KI((int)(4 * 0x7f4a7c15u)));
-    return FN(mix_hash_)(seeded ^ FN(cell_)(p.y, NOISE_P1) ^ FN(cell_)(p.z, NOISE_P2) ^
-                         FN(cell_)(t, NOISE_P3));
+    return seeded ^ FN(cell_)(p.y, NOISE_P1) ^ FN(cell_)(p.z, NOISE_P2) ^ FN(cell_)(t, NOISE_P3);
 }
 
 /* probe: 0 times the coordinates; anything but 0 comes from NaN or infinity. */

@@ -80,6 +80,17 @@ SL_INLINE sli slv_int_of_f(slf x) {
 SL_INLINE int slu_int_of_f(float x) {
     return (int)x;
 }
+/* Truncates; -2^31 for NaN and what does not fit. */
+SL_INLINE sli slv_whole_of_f(slf x) {
+#if SL_LANES == 8
+    return (sli)__builtin_ia32_cvttps2dq256(x);
+#else
+    return (sli)__builtin_ia32_cvttps2dq(x);
+#endif
+}
+SL_INLINE int slu_whole_of_f(float x) {
+    return x >= -2147483648.0f && x < 2147483648.0f ? (int)x : -2147483647 - 1;
+}
 SL_INLINE sli slv_bits_of_f(slf x) {
     return (sli)x;
 }

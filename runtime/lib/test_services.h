@@ -31,7 +31,7 @@ struct TestLight {
     bool falloff = false; // color / (L.L)
     float nondiffuse = 0, nonspecular = 0;
     std::string category = {}; // comma-separated list, as __category
-    int samples = 1;      // more than one: answers that many times with `more`
+    int samples = 1;           // more than one: answers that many times with `more`
 };
 
 // What message() finds under a name: one value for all points, or lane-dependent values by a

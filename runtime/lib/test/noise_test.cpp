@@ -25,8 +25,8 @@ const Covers covers{"noise_f_1",     "noise_f_2",     "noise_f_3",     "noise_f_
 // -------------------------------------------------------------
 
 using u32 = std::uint32_t;
-constexpr u32 primes[4] = {0x8da6b343, 0xd8163841, 0xcb1ab31f, 0xa7d69b35};
-constexpr u32 multipliers[3] = {0x2c1b3c6d, 0x9d2c5681, 0xe3779b97};
+constexpr u32 primes[4] = {0x8da6b343, 0xb5297a4d, 0xcb1ab31f, 0xa7d69b35};
+constexpr u32 multipliers[3] = {0xe3779b97, 0x9d2c5681, 0x2c1b3c6d};
 
 bool bit(u32 h, int n) {
     return h >> n & 1;
@@ -42,8 +42,12 @@ double gradient(u32 h, int dims, const double* d) {
         return sign(30, u) + 2 * sign(29, v);
     }
     case 3: {
-        const double u = bit(h, 31) ? d[1] : d[0], other = bit(h, 31) ? d[0] : d[1];
-        return sign(28, u) + sign(27, bit(h, 30) && bit(h, 29) ? other : d[2]);
+        const double a = sign(28, 0.822598);
+        const double along =
+            bit(h, 30)   ? sign(29, 0.997497) * d[0] + sign(28, 0.997497) * d[1] + 0.1 * d[2]
+            : bit(h, 29) ? a * d[1] + 1.150362 * d[2]
+                         : a * d[0] + 1.150362 * d[2];
+        return sign(31, along);
     }
     default: {
         const double u = bit(h, 31) && bit(h, 30) ? d[1] : d[0], v = bit(h, 31) ? d[2] : d[1];
@@ -74,7 +78,6 @@ double reference_noise(int dims, int channel, const double* a, const double* per
             const double w = f * f * f * (f * (6 * f - 15) + 10);
             weight *= up ? w : 1 - w;
         }
-        h ^= h >> 15;
         sum += weight * gradient(h * multipliers[channel], dims, d);
     }
     return 0.5 + scale[dims] * sum;

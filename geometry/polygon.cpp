@@ -70,6 +70,28 @@ void plane_derivatives(const V3d& n, V3d& dPdu, V3d& dPdv) {
     }
 }
 
+// All corners turn the same way, once around: the x direction changes sign twice only.
+bool strictly_convex(std::span<const Point2> points) {
+    const std::size_t n = points.size();
+    int turn = 0, flips = 0;
+    double last_dx = 0;
+    for (std::size_t i = 0; i < 2 * n; ++i) {
+        const Point2 &a = points[i % n], &b = points[(i + 1) % n], &c = points[(i + 2) % n];
+        const double o = orient(a, b, c);
+        const int side = o > 0 ? 1 : -1;
+        if (o == 0 || (turn != 0 && side != turn)) {
+            return false;
+        }
+        turn = side;
+        const double dx = b.x - a.x;
+        if (dx != 0) {
+            flips += i >= n && (dx > 0) != (last_dx > 0);
+            last_dx = dx;
+        }
+    }
+    return flips <= 2;
+}
+
 class PolygonMesh final : public Surface {
 public:
     PolygonMesh(const rib::Polygons& polygons, const rib::ParamList& params)
@@ -88,7 +110,8 @@ public:
         return plain_triangles_ ? polygons_.vertices.size() / 3 : triangles_.size();
     }
     [[nodiscard]] std::size_t heap_bytes() const override {
-        return triangles_.capacity() * sizeof(Triangle) + normals_.capacity() * sizeof(V3f);
+        return sizeof *this + triangles_.capacity() * sizeof(Triangle) +
+               normals_.capacity() * sizeof(V3f);
     }
     [[nodiscard]] SurfacePoint evaluate(const LocalPoint& at) const override;
     [[nodiscard]] LocalPoint step(const LocalPoint& at, double du, double dv) const override;
@@ -122,16 +145,19 @@ private:
     std::size_t num_corners_ = 0;
     Box box_;
     double extent_ = 0;
-    // Scratch of build(), one polygon at a time.
-    std::vector<V3d> points_;
-    std::vector<Point2> flat_;
-    std::vector<std::uint32_t> loop_sizes_;
+
+    // One polygon while it is cut.
+    struct Outline {
+        std::vector<V3d> points;
+        std::vector<Point2> flat; // the points without one coordinate
+        std::vector<std::uint32_t> loop_sizes;
+    };
 
     bool scan_plain_triangles(PolygonFaults& faults);
-    void add_polygon(std::uint32_t polygon, std::size_t first_corner, PolygonFaults& faults);
-    bool gather(std::size_t first_corner, std::size_t count, PolygonFaults& faults);
-    void add_convex(std::uint32_t polygon, std::size_t first_corner);
-    [[nodiscard]] bool strictly_convex() const;
+    bool gather(std::size_t first_corner, std::size_t count, Outline& outline,
+                PolygonFaults& faults);
+    void add_polygon(std::uint32_t polygon, std::size_t first_corner, Outline& outline,
+                     PolygonFaults& faults);
     void finish();
 
     [[nodiscard]] Triangle triangle(std::uint32_t part) const {
@@ -179,21 +205,22 @@ bool PolygonMesh::build(PolygonFaults& faults) {
     faults = {};
     normals_.resize(polygons_.num_loops.size());
     std::size_t loop = 0, corner = 0;
+    Outline outline;
     for (std::size_t i = 0; i < polygons_.num_loops.size(); ++i) {
-        loop_sizes_.clear();
+        outline.loop_sizes.clear();
         std::size_t count = 0;
         for (std::int32_t k = 0; k < polygons_.num_loops[i] && loop < polygons_.num_vertices.size();
              ++k, ++loop) {
             const auto size = static_cast<std::uint32_t>(std::max(polygons_.num_vertices[loop], 0));
-            loop_sizes_.push_back(size);
+            outline.loop_sizes.push_back(size);
             count += size;
         }
         if (count > num_corners_ - corner) {
             ++faults.bad_index;
             break;
         }
-        if (gather(corner, count, faults)) {
-            add_polygon(static_cast<std::uint32_t>(i), corner, faults);
+        if (gather(corner, count, outline, faults)) {
+            add_polygon(static_cast<std::uint32_t>(i), corner, outline, faults);
         }
         corner += count;
     }
@@ -226,16 +253,17 @@ bool PolygonMesh::scan_plain_triangles(PolygonFaults& faults) {
 }
 
 // Fetches the points of one polygon; false (counted) if it cannot be drawn.
-bool PolygonMesh::gather(std::size_t first_corner, std::size_t count, PolygonFaults& faults) {
-    points_.clear();
+bool PolygonMesh::gather(std::size_t first_corner, std::size_t count, Outline& outline,
+                         PolygonFaults& faults) {
+    outline.points.clear();
     for (std::size_t k = first_corner; k < first_corner + count; ++k) {
         const std::int32_t v = polygons_.vertices[k];
         if (v < 0 || static_cast<std::size_t>(v) >= P_.count()) {
             ++faults.bad_index;
             return false;
         }
-        points_.push_back(P_[static_cast<std::size_t>(v)]);
-        if (!usable(points_.back())) {
+        outline.points.push_back(P_[static_cast<std::size_t>(v)]);
+        if (!usable(outline.points.back())) {
             ++faults.not_finite;
             return false;
         }
@@ -243,10 +271,10 @@ bool PolygonMesh::gather(std::size_t first_corner, std::size_t count, PolygonFau
     return true;
 }
 
-void PolygonMesh::add_polygon(std::uint32_t polygon, std::size_t first_corner,
+void PolygonMesh::add_polygon(std::uint32_t polygon, std::size_t first_corner, Outline& outline,
                               PolygonFaults& faults) {
-    const std::size_t outer = loop_sizes_.empty() ? 0 : loop_sizes_.front();
-    const V3d n = outer < 3 ? V3d() : newell(std::span(points_).first(outer));
+    const std::size_t outer = outline.loop_sizes.empty() ? 0 : outline.loop_sizes.front();
+    const V3d n = outer < 3 ? V3d() : newell(std::span(outline.points).first(outer));
     const V3d unit = normalize(n);
     if (!(base::length(unit) > 0.5)) {
         ++faults.degenerate;
@@ -256,56 +284,26 @@ void PolygonMesh::add_polygon(std::uint32_t polygon, std::size_t first_corner,
     // Dropping the coordinate of the largest component keeps the others as the floats they are:
     // exact predicates.
     const int axis = largest_axis(unit);
-    flat_.clear();
-    for (const V3d& p : points_) {
-        flat_.push_back({p[(axis + 1) % 3], p[(axis + 2) % 3]});
+    outline.flat.clear();
+    for (const V3d& p : outline.points) {
+        outline.flat.push_back({p[(axis + 1) % 3], p[(axis + 2) % 3]});
     }
-    if (loop_sizes_.size() == 1 && strictly_convex()) {
-        add_convex(polygon, first_corner);
+    const auto base = static_cast<std::uint32_t>(first_corner);
+    if (outline.loop_sizes.size() == 1 && strictly_convex(outline.flat)) {
+        for (std::uint32_t k = 1; k + 1 < outline.flat.size(); ++k) {
+            triangles_.push_back({{base, base + k, base + k + 1}, polygon});
+        }
         return;
     }
-    const Triangulation cut = triangulate(flat_, loop_sizes_);
+    const Triangulation cut = triangulate(outline.flat, outline.loop_sizes);
     for (const auto& t : cut.triangles) {
-        const auto base = static_cast<std::uint32_t>(first_corner);
         triangles_.push_back({{base + t[0], base + t[1], base + t[2]}, polygon});
     }
     faults.degenerate += cut.triangles.empty();
     faults.tangled += !cut.clean && !cut.triangles.empty();
 }
 
-// All corners turn the same way, once around: the x direction changes sign twice only.
-bool PolygonMesh::strictly_convex() const {
-    const std::size_t n = flat_.size();
-    int turn = 0, flips = 0;
-    double last_dx = 0;
-    for (std::size_t i = 0; i < 2 * n; ++i) {
-        const Point2 &a = flat_[i % n], &b = flat_[(i + 1) % n], &c = flat_[(i + 2) % n];
-        const double o = orient(a, b, c);
-        const int side = o > 0 ? 1 : -1;
-        if (o == 0 || (turn != 0 && side != turn)) {
-            return false;
-        }
-        turn = side;
-        const double dx = b.x - a.x;
-        if (dx != 0) {
-            flips += i >= n && (dx > 0) != (last_dx > 0);
-            last_dx = dx;
-        }
-    }
-    return flips <= 2;
-}
-
-void PolygonMesh::add_convex(std::uint32_t polygon, std::size_t first_corner) {
-    const auto base = static_cast<std::uint32_t>(first_corner);
-    for (std::uint32_t k = 1; k + 1 < flat_.size(); ++k) {
-        triangles_.push_back({{base, base + k, base + k + 1}, polygon});
-    }
-}
-
 void PolygonMesh::finish() {
-    points_ = {};
-    flat_ = {};
-    loop_sizes_ = {};
     triangles_.shrink_to_fit();
     const auto count = static_cast<std::uint32_t>(num_parts());
     for (std::uint32_t i = 0; i < count; ++i) {

@@ -160,7 +160,7 @@ public:
     [[nodiscard]] virtual TraceError trace_error(const LocalPoint& at,
                                                  const SurfacePoint& here) const;
     [[nodiscard]] virtual std::size_t num_parts() const { return 1; }
-    // Bytes on the heap, for statistics.
+    // Bytes, itself included, for statistics.
     [[nodiscard]] virtual std::size_t heap_bytes() const { return 0; }
 
     // --- shading

@@ -428,6 +428,44 @@ TEST(World, NoSelfHitsFromSpawnOrigins) {
     RecordProperty("largest_relative_offset", std::to_string(largest_offset));
 }
 
+// Shapes that are not convex may be met again, but not at once: their radii of curvature are
+// near 1.
+TEST(World, NoSelfHitsFromOtherQuadrics) {
+    using K = QuadricKind;
+    const rib::Quadric shapes[] = {
+        {K::Torus, {1, 0.4, 0, 360, 360}}, {K::Cone, {2, 1, 360}},
+        {K::Cylinder, {1, -1, 1, 360}},    {K::Hyperboloid, {1, 0, -1, 0.3, 1, 1, 360}},
+        {K::Paraboloid, {1, 0, 1.5, 360}}, {K::Disk, {0, 1, 360}},
+    };
+    std::mt19937 rng(5);
+    std::size_t rays = 0, self_hits = 0;
+    for (const rib::Quadric& q : shapes) {
+        for (const double offset : {0.0, 100.0, 1e4}) {
+            SceneBuilder b;
+            const Mat4 place = random_transform(rng, offset, offset > 10);
+            b.add(SceneBuilder::quadric(q.kind, q.args), place);
+            QuietDiag d;
+            const auto world = b.world(d.diag);
+            const V3f centre(point(place, V3d()));
+            for (int n = 0; n < 500; ++n) {
+                const V3f from = centre + random_direction(rng) * 5.0f;
+                const Hit hit = trace(*world, {from, centre + random_direction(rng) * 0.8f - from});
+                for (int k = 0; hit.valid() && k < 16; ++k) {
+                    const V3f dir = random_direction(rng);
+                    // A rounding error's worth of distance, but far more than an offset could
+                    // bridge.
+                    const float near = float(1e-4 + 1e-6 * offset);
+                    const Hit again = trace(*world, {world->spawn_origin(hit, dir), dir, 0, near});
+                    ++rays;
+                    self_hits += again.valid();
+                }
+            }
+        }
+    }
+    EXPECT_GT(rays, 60000u);
+    EXPECT_EQ(self_hits, 0u);
+}
+
 TEST(World, LeavesOutWhatItCannotDraw) {
     SceneBuilder b;
     rib::Primitive p;

@@ -19,6 +19,8 @@ constexpr std::uint64_t bit(sl_variable v) {
 
 // Variables that need no surface point, unless a primitive variable supplies them.
 constexpr std::uint64_t attribute_vars = bit(SL_VAR_Cs) | bit(SL_VAR_Os);
+constexpr std::uint64_t position_vars = bit(SL_VAR_P) | bit(SL_VAR_I) | bit(SL_VAR_N) |
+                                        bit(SL_VAR_Ng) | bit(SL_VAR_dPdu) | bit(SL_VAR_dPdv);
 constexpr std::uint64_t free_vars = bit(SL_VAR_E) | bit(SL_VAR_time) | bit(SL_VAR_dPdtime);
 
 // Where the variables of one record go; unasked ones have no base.
@@ -95,8 +97,10 @@ public:
                 fill_one(i);
             }
         }
-        for (int k = 0; k < 3 && main_.has(SL_VAR_E); ++k) {
-            r_.out.var[SL_VAR_E][k] = 0; // camera space has its origin at the eye
+        for (const Planes* planes : {&main_, &aux_u_, &aux_v_}) {
+            if (planes->has(SL_VAR_E)) { // camera space has its origin at the eye
+                std::fill_n(planes->points->var[SL_VAR_E], 3, 0.0f);
+            }
         }
     }
 
@@ -143,9 +147,11 @@ private:
     }
 
     void fill_geometry(const Place& p, std::size_t i) const {
-        const V3d P = table_.cam_point(p.hit, p.here.P);
-        main_.set(SL_VAR_P, i, P);
-        main_.set(SL_VAR_I, i, P - origin(i));
+        if (main_.has(SL_VAR_P) || main_.has(SL_VAR_I)) {
+            const V3d P = table_.cam_point(p.hit, p.here.P);
+            main_.set(SL_VAR_P, i, P);
+            main_.set(SL_VAR_I, i, P - origin(i));
+        }
         main_.set(SL_VAR_u, i, p.here.u);
         main_.set(SL_VAR_v, i, p.here.v);
         if (main_.has(SL_VAR_dPdu)) {
@@ -260,23 +266,35 @@ private:
 
     void fill_auxiliary(const Place& p, std::size_t i, double du, double dv,
                         const Planes& out) const {
-        const SurfacePoint d = p.surface().difference(p.at, p.here, du, dv);
-        const V3d dP = table_.cam_vector(p.hit, d.P);
-        out.set(SL_VAR_P, i, dP);
-        out.set(SL_VAR_I, i, incident_difference(dP, i));
-        out.set(SL_VAR_u, i, d.u);
-        out.set(SL_VAR_v, i, d.v);
-        out.set(SL_VAR_dPdu, i, table_.cam_vector(p.hit, d.dPdu));
-        out.set(SL_VAR_dPdv, i, table_.cam_vector(p.hit, d.dPdv));
+        SurfacePoint d;
+        const bool by_plane = !p.surface().inherits_texture_coordinates(); // s, t follow P
+        if (out.wanted & (position_vars | (by_plane ? bit(SL_VAR_s) | bit(SL_VAR_t) : 0))) {
+            d = p.surface().difference(p.at, p.here, du, dv);
+            fill_position_differences(p, i, d, out);
+            fill_normal_difference(p, i, d, du, dv, out);
+        }
+        out.set(SL_VAR_u, i, du);
+        out.set(SL_VAR_v, i, dv);
         for (const sl_variable same : {SL_VAR_du, SL_VAR_dv, SL_VAR_time}) {
             out.set(same, i, 0.0);
         }
         out.set(SL_VAR_dPdtime, i, V3d());
-        if (out.has(SL_VAR_E)) {
-            std::fill_n(out.points->var[SL_VAR_E], 3, 0.0f);
-        }
-        fill_normal_difference(p, i, d, du, dv, out);
         fill_variable_differences(p, i, d, du, dv, out);
+    }
+
+    void fill_position_differences(const Place& p, std::size_t i, const SurfacePoint& d,
+                                   const Planes& out) const {
+        if (out.has(SL_VAR_P) || out.has(SL_VAR_I)) {
+            const V3d dP = table_.cam_vector(p.hit, d.P);
+            out.set(SL_VAR_P, i, dP);
+            out.set(SL_VAR_I, i, incident_difference(dP, i));
+        }
+        if (out.has(SL_VAR_dPdu)) {
+            out.set(SL_VAR_dPdu, i, table_.cam_vector(p.hit, d.dPdu));
+        }
+        if (out.has(SL_VAR_dPdv)) {
+            out.set(SL_VAR_dPdv, i, table_.cam_vector(p.hit, d.dPdv));
+        }
     }
 
     // The same eye sees both points; rays of an orthographic camera are parallel instead.
@@ -313,11 +331,17 @@ private:
                 interpolate_difference(*param, p.surface(), p.at, to, value);
             }
         };
-        double color[3] = {}, opacity[3] = {};
-        change(vars.Cs, color);
-        change(vars.Os, opacity);
-        out.set(SL_VAR_Cs, i, vec(color));
-        out.set(SL_VAR_Os, i, vec(opacity));
+        for (const auto& [id, param] :
+             {std::pair{SL_VAR_Cs, vars.Cs}, std::pair{SL_VAR_Os, vars.Os}}) {
+            double color[3] = {};
+            if (out.has(id)) {
+                change(param, color);
+                out.set(id, i, vec(color));
+            }
+        }
+        if (!out.has(SL_VAR_s) && !out.has(SL_VAR_t)) {
+            return;
+        }
         std::array<double, 2> st{d.P.x, d.P.y};
         if (vars.st) {
             change(vars.st, st.data());

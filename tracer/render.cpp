@@ -249,7 +249,7 @@ int main(int argc, char** argv) {
         return exit_done;
     }
     if (!parsed.error.empty()) {
-        std::fprintf(stderr, "%s: %s\n%s", program.c_str(), parsed.error.c_str(),
+        std::fprintf(stderr, "%s: error: %s\n%s", program.c_str(), parsed.error.c_str(),
                      trace::usage_text(program).c_str());
         return exit_usage;
     }

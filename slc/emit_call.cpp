@@ -131,10 +131,13 @@ void Emitter::fixed_arguments(Call& c) {
 
 void Emitter::output_argument(Call& c, VarId v) {
     settle_readers(v);
-    const bool any_type = c.row.args.size() > 0 &&
-                          std::any_of(c.row.args.begin(), c.row.args.end(), [](const ArgSpec& a) {
-                              return a.is_output && a.kind == ArgKind::Anything;
-                          });
+    const VarPlace& place = flow_.place(v);
+    if (place.set_first && place.home == &c.b && declared_.insert(v).second) {
+        out_.line(declarator(v, false) + ";"); // the call sets it
+    }
+    const bool any_type = std::any_of(c.row.args.begin(), c.row.args.end(), [](const ArgSpec& a) {
+        return a.is_output && a.kind == ArgKind::Anything;
+    });
     if (any_type) {
         c.arguments.push_back("&" + typed_value(v)); // the body leaves masked lanes alone
         return;
@@ -145,9 +148,11 @@ void Emitter::output_argument(Call& c, VarId v) {
         return;
     }
     const std::string temporary = fresh("out");
-    const Expr before = fit(name_of(v), form(v), c.lanes);
-    out_.line(std::string(type_word(form(v), c.lanes)) + " " + temporary + " = " + before.text +
-              ";");
+    std::string initial;
+    if (c.row.has(PropInout)) {
+        initial = " = " + fit(name_of(v), form(v), c.lanes).text;
+    }
+    out_.line(std::string(type_word(form(v), c.lanes)) + " " + temporary + initial + ";");
     c.arguments.push_back("&" + temporary);
     c.through.emplace_back(v, temporary);
 }

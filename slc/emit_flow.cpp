@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "slc/emit_flow.h"
 
-#include "slc/builtins.h"
+#include "slc/ir_util.h"
 
 namespace slc {
 
 namespace {
 
-bool is_loop(const Stmt& s) {
-    return s.op == Op::Loop || s.op == Op::Illuminance || s.op == Op::Gather;
-}
-
 bool is_construct(const Stmt& s) {
-    return is_loop(s) || s.op == Op::Scope;
+    return is_loop(s.op) || s.op == Op::Scope;
 }
 
 // Lanes of the body are chosen by the lights, whatever the control flow around it.
@@ -22,25 +18,6 @@ bool is_light_statement(const Stmt& s) {
 }
 
 } // namespace
-
-std::vector<VarId> side_outputs(const Stmt& s) {
-    std::vector<VarId> outputs;
-    if (s.op == Op::Call && s.builtin >= 0) {
-        const BuiltinRow& row = builtin_rows()[static_cast<std::size_t>(s.builtin)];
-        for (std::size_t i = 0; i < s.args.size() && i < row.args.size(); ++i) {
-            if (row.args[i].is_output) {
-                // The channel of a texture name is no argument of the signature; no row has both.
-                outputs.push_back(s.args[i]);
-            }
-        }
-    }
-    for (const auto& [name, var] : s.options) {
-        if (name.starts_with("light:")) {
-            outputs.push_back(var);
-        }
-    }
-    return outputs;
-}
 
 Flow::Flow(const Program& program, const Block& body, std::uint64_t results, bool all_uniform)
     : program_(program), body_(body), all_uniform_(all_uniform), places_(program.vars.size()),
@@ -109,7 +86,7 @@ void Flow::note_exit(const Stmt& s, const std::vector<const Stmt*>& enclosing) {
     ExitInfo info;
     for (std::size_t i = enclosing.size(); i-- > 0 && !info.target;) {
         const bool counts =
-            s.op == Op::Leave ? enclosing[i]->op == Op::Scope : is_loop(*enclosing[i]);
+            s.op == Op::Leave ? enclosing[i]->op == Op::Scope : is_loop(enclosing[i]->op);
         if (counts && --levels <= 0) {
             info.target = enclosing[i];
         }
@@ -252,15 +229,6 @@ void Flow::place_block(const Block& b) {
 }
 
 void Flow::place_statement(const Stmt& s, const Block& b) {
-    const std::vector<VarId> outputs = side_outputs(s);
-    const auto is_side_output = [&](VarId v) {
-        for (const VarId o : outputs) {
-            if (o == v) {
-                return true;
-            }
-        }
-        return false;
-    };
     if (s.op == Op::Loop) {
         // The condition is computed in the first body and read there.
         place_block(s.bodies[0]);
@@ -269,35 +237,18 @@ void Flow::place_statement(const Stmt& s, const Block& b) {
         place_block(s.bodies[2]);
         return;
     }
-    for (const VarId v : s.args) {
-        if (!is_side_output(v)) {
-            read(v, b);
-        }
-    }
-    read(s.category, b);
-    for (const auto& [name, v] : s.options) {
-        if (!is_side_output(v)) {
-            read(v, b);
-        }
-    }
-    for (const VarId v : outputs) {
-        // A call may leave an output as it was; options are set inside the loop.
-        read(v, b);
-        write(v, b, false);
-    }
+    for_each_read(s, [&](VarId v) { read(v, b); });
+    for_each_write(s, [&](VarId v, bool whole) {
+        // Options are set inside the loop, element stores leave the rest of the array.
+        const bool here = s.op != Op::Illuminance && s.op != Op::Gather;
+        write(v, b, whole && here);
+    });
     if (s.op == Op::Illuminance) {
         for (const sl_variable id : {SL_VAR_L, SL_VAR_Cl, SL_VAR_Ol}) {
             write(global(id), s.bodies[0], true);
         }
     } else if (s.op == Op::Illuminate || s.op == Op::Solar) {
         write(global(SL_VAR_L), b, true);
-    }
-    if (s.dst != no_var) {
-        const bool whole = s.op != Op::Store;
-        if (!whole) {
-            read(s.dst, b);
-        }
-        write(s.dst, b, whole);
     }
     for (const Block& inner : s.bodies) {
         place_block(inner);

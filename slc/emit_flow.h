@@ -97,7 +97,4 @@ private:
     std::vector<bool> first_sets_;
 };
 
-// The variables an operation assigns besides dst: output arguments of calls, "light:x" options.
-[[nodiscard]] std::vector<VarId> side_outputs(const Stmt& s);
-
 } // namespace slc

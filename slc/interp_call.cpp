@@ -57,10 +57,9 @@ void put(Value& r, const Triple3& v) {
     r.x.assign(v.begin(), v.end());
 }
 
-// pow(max(0, N.H), 1/roughness), sl.md 4.6
+// pow(max(0, N.H), 1/roughness) with H = normalize(L + V); nothing else is normalised, sl.md 4.6
 double specular_brdf(const Triple3& L, const Triple3& N, const Triple3& V, double roughness) {
-    const Triple3 l = normalize3(L);
-    const Triple3 h = normalize3({l[0] + V[0], l[1] + V[1], l[2] + V[2]});
+    const Triple3 h = normalize3({L[0] + V[0], L[1] + V[1], L[2] + V[2]});
     return pow_sl(std::max(0.0, dot3(N, h)), 1 / roughness);
 }
 
@@ -87,10 +86,11 @@ Triple3 Interpreter::illuminate_sum(const Stmt& s, int point) {
         }
         double weight = 0;
         if (body.starts_with("diffuse")) {
-            weight = (1 - sample.nondiffuse) * dot3(l, N);
+            // A cone wider than a half space takes light, it does not remove it.
+            const double cosine = dot3(l, N);
+            weight = (1 - sample.nondiffuse) * (placed ? std::max(0.0, cosine) : cosine);
         } else if (body == "specular") {
-            weight =
-                (1 - sample.nonspecular) * specular_brdf(sample.L, N, arg(1).triple(), arg(2).f());
+            weight = (1 - sample.nonspecular) * specular_brdf(l, N, arg(1).triple(), arg(2).f());
         } else {
             const Triple3 n = normalize3(N);
             const Triple3 v = scale3(normalize3(arg(1).triple()), -1);

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "slc/oracle_world.h"
+
+#include <cmath>
+
+namespace slc {
+
+namespace {
+
+OracleWorld& world_of(void* engine) {
+    return *static_cast<OracleWorld*>(engine);
+}
+
+// What a space's coordinates become in current space; "object" turns with the point.
+Matrix16 to_current(const std::string& name, int point) {
+    if (name == "shader") {
+        return {2, 0, 0, 0, 0, 1, 0.5, 0, 0, -0.5, 1, 0, 1, 2, 3, 1};
+    }
+    if (name == "world") {
+        return {0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 0.5, 0, 0.25, 1};
+    }
+    if (name == "object") {
+        const double a = 0.125 * point;
+        return {std::cos(a), std::sin(a), 0, 0, -std::sin(a), std::cos(a), 0, 0, 0, 0, 1.5, 0,
+                0,           a,           0, 1};
+    }
+    return {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+}
+
+bool is_known(const std::string& name) {
+    return name == "current" || name == "camera" || name == "shader" || name == "world" ||
+           name == "object";
+}
+
+constexpr const char* categories[] = {"key,fill", "rim"};
+
+bool in_category(int light, const std::string& wanted) {
+    if (wanted.empty()) {
+        return true;
+    }
+    const bool negative = wanted[0] == '-';
+    const std::string name = "," + (negative ? wanted.substr(1) : wanted) + ",";
+    const bool has = ("," + std::string(categories[light]) + ",").find(name) != std::string::npos;
+    return has != negative;
+}
+
+constexpr std::string_view message_functions[] = {"lightsource", "surface",  "displacement",
+                                                  "atmosphere",  "incident", "opposite",
+                                                  "attribute",   "option",   "rendererinfo"};
+
+std::uint32_t serve_light(void* engine, const sl_light_query* query, sl_light_result* result) {
+    OracleWorld& world = world_of(engine);
+    result->more = 0;
+    std::uint32_t reached = 0;
+    for (std::uint32_t lane = 0; lane < query->lanes; ++lane) {
+        if ((query->mask >> lane & 1U) == 0) {
+            continue;
+        }
+        const auto triple = [&](const float* p) {
+            return Triple3{p[lane], p[query->lanes + lane], p[2 * query->lanes + lane]};
+        };
+        LightSample sample;
+        const Triple3 axis = query->axis ? triple(query->axis) : Triple3{0, 0, 1};
+        const double cosangle = query->axis ? query->cosangle[lane] : -2;
+        if (!world.light(query->index, static_cast<int>(query->first + lane), triple(query->P),
+                         axis, cosangle, query->category, sample)) {
+            continue;
+        }
+        reached |= 1U << lane;
+        for (std::size_t k = 0; k < 3; ++k) {
+            result->L[k * query->lanes + lane] = static_cast<float>(sample.L[k]);
+            result->Cl[k * query->lanes + lane] = static_cast<float>(sample.Cl[k]);
+            result->Ol[k * query->lanes + lane] = static_cast<float>(sample.Ol[k]);
+        }
+        result->nondiffuse[lane] = static_cast<float>(sample.nondiffuse);
+        result->nonspecular[lane] = static_cast<float>(sample.nonspecular);
+    }
+    return reached;
+}
+
+void serve_ambient(void* engine, std::uint32_t first, std::uint32_t mask, const float* P,
+                   float* C) {
+    const std::uint32_t lanes = world_of(engine).lanes();
+    for (std::uint32_t lane = 0; lane < lanes; ++lane) {
+        if ((mask >> lane & 1U) != 0) {
+            const Triple3 c = world_of(engine).ambient(
+                static_cast<int>(first + lane), {P[lane], P[lanes + lane], P[2 * lanes + lane]});
+            for (std::size_t k = 0; k < 3; ++k) {
+                C[k * lanes + lane] = static_cast<float>(c[k]);
+            }
+        }
+    }
+}
+
+std::int32_t serve_space(void* engine, sl_string from, sl_string to, std::uint32_t first,
+                         float* m) {
+    const std::uint32_t lanes = world_of(engine).lanes();
+    const std::string source = from ? from : "current";
+    const std::string target = to ? to : "current";
+    const bool per_lane = source == "object" || target == "object";
+    bool known = true;
+    for (std::uint32_t lane = 0; lane < (per_lane ? lanes : 1); ++lane) {
+        Matrix16 matrix{};
+        known = world_of(engine).space(source, target, static_cast<int>(first + lane), matrix);
+        for (std::size_t k = 0; k < 16; ++k) {
+            m[per_lane ? k * lanes + lane : k] = static_cast<float>(matrix[k]);
+        }
+    }
+    return !known ? 0 : per_lane ? 2 : 1;
+}
+
+std::uint32_t serve_message(void* engine, std::int32_t kind, sl_string name, std::int32_t type,
+                            std::int32_t array_length, std::uint32_t first, std::uint32_t mask,
+                            float* value) {
+    const std::uint32_t lanes = world_of(engine).lanes();
+    if (type == SL_TYPE_string) {
+        return 0;
+    }
+    std::uint32_t set = 0;
+    for (std::uint32_t lane = 0; lane < lanes; ++lane) {
+        Value v = Value::zero(static_cast<Type>(type), array_length);
+        if ((mask >> lane & 1U) != 0 &&
+            world_of(engine).message(message_functions[kind], name, static_cast<int>(first + lane),
+                                     v)) {
+            set |= 1U << lane;
+            for (std::size_t k = 0; k < v.x.size(); ++k) {
+                value[k * lanes + lane] = static_cast<float>(v.x[k]);
+            }
+        }
+    }
+    return set;
+}
+
+} // namespace
+
+sl_services OracleWorld::services() {
+    sl_services s{};
+    s.light_count = [](void* engine) -> std::int32_t { return world_of(engine).num_lights(); };
+    s.light = serve_light;
+    s.ambient = serve_ambient;
+    s.space = serve_space;
+    s.message = serve_message;
+    s.print = [](void* engine, sl_string text) { world_of(engine).print(text); };
+    s.intern = [](void* engine, const char* text) {
+        return world_of(engine).strings().intern(text);
+    };
+    s.shader_name = [](void* engine, sl_string type) -> sl_string {
+        return world_of(engine).strings().intern(world_of(engine).shader_name(type ? type : ""));
+    };
+    s.report = [](void*, std::int32_t, const char*) {};
+    s.depth_range = [](void* engine, float* near_far) {
+        double range[2];
+        world_of(engine).depth_range(range[0], range[1]);
+        near_far[0] = static_cast<float>(range[0]);
+        near_far[1] = static_cast<float>(range[1]);
+    };
+    s.raylevel = [](void* engine) -> std::int32_t { return world_of(engine).raylevel(); };
+    s.ray_kind = [](void*) -> std::int32_t { return SL_RAY_camera; };
+    return s;
+}
+
+float OracleWorld::input(std::size_t variable, int component, int point) {
+    const auto k = static_cast<float>(variable * 3 + static_cast<std::size_t>(component));
+    return 0.9F + 0.85F * std::sin(1.7F * k + 0.61F * static_cast<float>(point) + 0.3F);
+}
+
+bool OracleWorld::light(int index, int, const Triple3& P, const Triple3& axis, double cos_angle,
+                        const std::string& category, LightSample& sample) {
+    if (!in_category(index, category)) {
+        return false;
+    }
+    sample.L = index == 0 ? Triple3{2 - P[0], 3 - P[1], -4 - P[2]} : Triple3{0.5, 1, 2};
+    sample.Cl = index == 0 ? Triple3{1, 0.5, 0.25} : Triple3{0.125, 0.25, 0.5};
+    sample.nondiffuse = index == 0 ? 0 : 0.25;
+    sample.nonspecular = index == 0 ? 0.5 : 0;
+    return cos_angle <= -1 || dot3(normalize3(sample.L), normalize3(axis)) >= cos_angle;
+}
+
+Triple3 OracleWorld::ambient(int point, const Triple3& P) {
+    return {0.1 + 0.01 * point, 0.2 + 0.125 * P[0], 0.3};
+}
+
+bool OracleWorld::space(const std::string& from, const std::string& to, int point, Matrix16& m) {
+    m = multiply(to_current(from, point), inverse(to_current(to, point)));
+    return is_known(from) && is_known(to);
+}
+
+// Only "known" has an answer, and not at every third point.
+bool OracleWorld::message(std::string_view function, const std::string& name, int point,
+                          Value& value) {
+    // attribute() and the like answer once for all points of the batch.
+    const bool per_batch =
+        function == "attribute" || function == "option" || function == "rendererinfo";
+    if (name != "known" || value.type == Type::String || (!per_batch && point % 3 == 1)) {
+        return false;
+    }
+    for (std::size_t k = 0; k < value.x.size(); ++k) {
+        value.x[k] = 0.5 + 0.25 * static_cast<double>(k) + (per_batch ? 0 : 0.125 * point);
+    }
+    return true;
+}
+
+void OracleWorld::depth_range(double& near_z, double& far_z) {
+    near_z = 0.5;
+    far_z = 20;
+}
+
+} // namespace slc

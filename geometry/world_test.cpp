@@ -208,6 +208,40 @@ TEST(World, ClosedMeshIsWatertight) {
     }
 }
 
+// Pieces of a sphere, cut by sweep and by z, fit together; so do the seam and the poles of a whole
+// one.
+TEST(World, SeamsAndJointsAreTight) {
+    SceneBuilder whole, pieces;
+    const Mat4 place = Mat4::translate({20, -30, 40}) * Mat4::rotate(25, {1, 1, 0});
+    whole.add(unit_sphere(), place);
+    const double cuts[] = {-1, -0.4, 0.3, 1};
+    for (int j = 0; j < 3; ++j) {
+        for (const double start : {0.0, 120.0, 190.0}) {
+            const double sweep = start == 0 ? 120 : start == 120 ? 70 : 170;
+            pieces.add(SceneBuilder::quadric(sphere_kind, {1, cuts[j], cuts[j + 1], sweep}),
+                       place * Mat4::rotate(start, {0, 0, 1}));
+        }
+    }
+    QuietDiag d;
+    std::mt19937 rng(6);
+    const auto a = whole.world(d.diag), b = pieces.world(d.diag);
+    for (int n = 0; n < 20000; ++n) {
+        V3d aim(random_direction(rng));
+        if (n % 2 == 0) { // at a cut
+            const double angle = (n % 3 == 0 ? 0 : n % 3 == 1 ? 120 : 190) * std::numbers::pi / 180;
+            const double rho = std::hypot(aim.x, aim.y);
+            aim = n % 4 == 0 ? V3d(rho * std::cos(angle), rho * std::sin(angle), aim.z)
+                             : V3d(aim.x, aim.y, 0) / rho * std::sqrt(1 - 0.09) + V3d(0, 0, 0.3);
+        }
+        const Ray ray{{20, -30, 40}, V3f(vector(place, aim))};
+        const Hit ha = trace(*a, ray), hb = trace(*b, ray);
+        ASSERT_TRUE(ha.valid() && hb.valid()) << n;
+        ASSERT_NEAR(ha.t, hb.t, 1e-6);
+    }
+    const Hit pole = trace(*a, {{20, -30, 40}, V3f(vector(place, V3d(0, 0, 1)))});
+    EXPECT_TRUE(pole.valid());
+}
+
 // Packets full or with one ray, alone or in spans: the same place. Bits may differ, as Embree
 // changes its code path with the number of active rays.
 TEST(World, OneRayOrEight) {

@@ -147,6 +147,9 @@ std::string compile_variant(const Toolchain& tools, const VariantText& variant,
     }
     if (variant.lanes == 8) {
         argv.emplace_back("-mavx2");
+        // Copies structures of lanes by 32 bytes: what was stored in halves cannot be forwarded to
+        // whole loads, which cost 70 % more time in calls of noise (docs/design/runtime-lib.md).
+        argv.emplace_back("-mtune=skylake-avx512");
     }
     for (const std::string& dir : split(tools.include_dir, ':')) {
         argv.push_back("-I" + dir);

@@ -9,60 +9,65 @@
  * -------------------------------------------------------------------------------------------------------
  */
 
-/* x = quadrant pi/2 + r, |r| <= pi/4. pi/2 in four parts of 12 bits: for |x| < 6400 the products
- * with the quadrant and the first two differences are exact [Cody80]; the bits of x + 1.5 2^23
- * hold the rounded integer. */
-SL_INLINE F FN(reduce_angle_)(F x, I* quadrant) {
+/* x = quadrant pi/2 + r + tail, |r| <= pi/4. pi/2 in four parts of 12 bits: for |x| < 6400 the
+ * products with the quadrant and the first two differences are exact [Cody80], what the others lose
+ * is the tail; the bits of x + 1.5 2^23 hold the rounded integer. */
+SL_INLINE F FN(reduce_angle_)(F x, F* tail, I* quadrant) {
     const I huge = ~LE(FN(abs)(x), K(6400));
     const F near = SEL(huge, K(0), x);
     const F sum = near * 0.636619772f + 12582912.0f;
     const F n = sum - 12582912.0f;
     *quadrant = BITS(sum);
-    F r = near - n * 0x1.92p+0f;
-    r = r - n * 0x1.fb4p-12f;
-    r = r - n * 0x1.444p-24f;
-    r = r - n * 0x1.68c234p-39f;
-    return FN(any)(huge) ? FN(huge_angle_)(x, huge, r, quadrant) : r;
+    const F a = (near - n * 0x1.92p+0f) - n * 0x1.fb4p-12f;
+    const F third = n * 0x1.444p-24f, fourth = n * 0x1.68c234p-39f;
+    const F b = a - third;
+    const F r = b - fourth;
+    *tail = ((a - b) - third) + ((b - r) - fourth);
+    return FN(any)(huge) ? FN(huge_angle_)(x, huge, r, tail, quadrant) : r;
 }
 
-SL_INLINE F FN(sine_of_octant_)(F r) {
+SL_INLINE F FN(sine_of_octant_)(F r, F tail) {
     const F z = r * r;
-    return r + r * z * (-0.166666552f + z * (0.0083321901f + z * -0.000195183922f));
+    const F p = -0.166666552f + z * (0.0083321901f + z * -0.000195183922f);
+    return r + (r * z * p + tail);
 }
 
-SL_INLINE F FN(cosine_of_octant_)(F r) {
+SL_INLINE F FN(cosine_of_octant_)(F r, F tail) {
     const F z = r * r;
     const F half = z * 0.5f;
     const F w = 1.0f - half;
     const F p = 0.0416666456f + z * (-0.00138873013f + z * 2.44306702e-05f);
-    return w + (((1.0f - w) - half) + z * z * p);
+    return w + (((1.0f - w) - half) + (z * z * p - r * tail));
 }
 
-SL_INLINE F FN(sine_in_quadrant_)(F r, I q) {
-    const F s = FN(sine_of_octant_)(r), c = FN(cosine_of_octant_)(r);
+SL_INLINE F FN(sine_in_quadrant_)(F r, F tail, I q) {
+    const F s = FN(sine_of_octant_)(r, tail), c = FN(cosine_of_octant_)(r, tail);
     const F v = SEL(FN(eq_i)(q & 1, KI(0)), s, c);
     return FLOAT(BITS(v) ^ FN(shl_i)(q & 2, 30));
 }
 
 F FN(sin)(F x) {
     I q;
-    const F r = FN(reduce_angle_)(x, &q);
-    return FN(sine_in_quadrant_)(r, q);
+    F tail;
+    const F r = FN(reduce_angle_)(x, &tail, &q);
+    return FN(sine_in_quadrant_)(r, tail, q);
 }
 
 F FN(cos)(F x) {
     I q;
-    const F r = FN(reduce_angle_)(x, &q);
-    return FN(sine_in_quadrant_)(r, FN(add_i)(q, KI(1)));
+    F tail;
+    const F r = FN(reduce_angle_)(x, &tail, &q);
+    return FN(sine_in_quadrant_)(r, tail, FN(add_i)(q, KI(1)));
 }
 
 F FN(tan)(F x) {
     I q;
-    const F r = FN(reduce_angle_)(x, &q);
+    F tail;
+    const F r = FN(reduce_angle_)(x, &tail, &q);
     const F z = r * r;
     F p = 0.0109455436f + z * (-4.61868476e-05f + z * 0.0044418294f);
     p = 0.333333522f + z * (0.13332583f + z * (0.0540686511f + z * (0.0212386101f + z * p)));
-    const F t = r + r * z * p;
+    const F t = r + (r * z * p + tail * (1.0f + z));
     const I even = FN(eq_i)(q & 1, KI(0));
     return SEL(even, t, -1.0f / SEL(even, K(1), t));
 }
@@ -70,16 +75,17 @@ F FN(tan)(F x) {
 /* --- inverse functions
  * -------------------------------------------------------------------------------------------- */
 
-SL_INLINE F FN(atan_small_)(F r) { /* |r| <= tan(pi/8) */
+SL_INLINE F FN(atan_small_)(F r) { /* |r| <= tan(3 pi/16) */
     const F z = r * r;
-    const F p = -0.142442375f + z * (0.105975993f + z * -0.0608511567f);
-    return r + r * z * (-0.333333164f + z * (0.199985236f + z * p));
+    F p = -0.0824874789f + z * (0.0506185517f + z * -0.0171257854f);
+    p = 0.199991822f + z * (-0.142693222f + z * (0.109529585f + z * p));
+    return r + r * z * (-0.333333194f + z * p);
 }
 
-/* atan(num/den) for 0 <= num <= den, den > 0, without the rounding of the quotient where it
- * matters. */
+/* atan(num/den) for 0 <= num <= den, den > 0; above tan(3 pi/16) as pi/4 +
+ * atan((num-den)/(num+den)). */
 SL_INLINE F FN(atan_quotient_)(F num, F den) {
-    const I big = LT(den * 0.414213562f, num);
+    const I big = LT(den * 0.668178637f, num);
     const F r = FN(atan_small_)(SEL(big, num - den, num) / SEL(big, num + den, den));
     return SEL(big, 0.785398163f + (r - 2.18556941e-08f), r);
 }

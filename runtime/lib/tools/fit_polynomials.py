@@ -84,7 +84,7 @@ FITS = {
     # in z = s^2, s = f/(2+f): log(1+f) = 2s + s z P(z)
     "log_s": (near0(lambda z: (log((1 + sqrt(z)) / (1 - sqrt(z))) / sqrt(z) - 2) / z), lambda z: z, 0,
               (mpf("0.1717"))**2, 4),
-    "atan": (near0(lambda z: (atan(sqrt(z)) / sqrt(z) - 1) / z), lambda z: z, 0, (sqrt(mpf(2)) - 1 + mpf("1e-3"))**2, 5),
+    "atan": (near0(lambda z: (atan(sqrt(z)) / sqrt(z) - 1) / z), lambda z: z, 0, mpf("0.4476"), 7),
     "asin": (near0(lambda z: (asin(sqrt(z)) / sqrt(z) - 1) / z), lambda z: z, 0, mpf("0.2501"), 5),
     # in z = x^2: erf x = x + x P(z)
     "erf": (near0(lambda z: erf(sqrt(z)) / sqrt(z) - 1), lambda z: sqrt(z) / erf(sqrt(z)) if z > mpf("1e-9") else mpf(1),

@@ -118,11 +118,12 @@ void BucketRenderer::composite_first(SampleBuffer& samples) {
         if (is_opaque(shades_[i]) && !may_be_matte) { // what follows, for nearly all samples
             std::copy_n(shades_[i].color, 3, samples.samples[i].color);
             std::copy_n(shades_[i].opacity, 3, samples.samples[i].opacity);
-            samples.z[i] = z;
+            samples.samples[i].z = z;
             continue;
         }
         std::array<float, 3> transmitted = {1, 1, 1};
-        if (composite(samples.samples[i], samples.z[i], transmitted, hits[i], shades_[i], z)) {
+        if (composite(samples.samples[i], samples.samples[i].z, transmitted, hits[i], shades_[i],
+                      z)) {
             behind_.push_back({i, hits[i].t, hits[i], transmitted});
         }
     }
@@ -147,8 +148,8 @@ void BucketRenderer::composite_behind(SampleBuffer& samples) {
         b.t += hits[i].t;
         b.hit = hits[i];
         const float z = ray_z(packets_[i / lanes], i % lanes, hits[i].t);
-        if (composite(samples.samples[b.ray], samples.z[b.ray], b.transmitted, b.hit, shades_[i],
-                      z)) {
+        if (composite(samples.samples[b.ray], samples.samples[b.ray].z, b.transmitted, b.hit,
+                      shades_[i], z)) {
             next_.push_back(b);
         }
     }

@@ -148,10 +148,14 @@ void Camera::make_simple_packet(const SampleBlock& block, std::size_t first,
         const std::size_t s = first + i;
         const Double4 x = widened(block.px.data() + s) + widened(block.x.data() + s);
         const Double4 y = widened(block.py.data() + s) + widened(block.y.data() + s);
-        Double4 ox = origin_.v0.x + x * origin_.vx.x + y * origin_.vy.x;
-        Double4 oy = origin_.v0.y + x * origin_.vx.y + y * origin_.vy.y;
-        Double4 dx = direction_.v0.x + x * direction_.vx.x + y * direction_.vy.x;
-        Double4 dy = direction_.v0.y + x * direction_.vx.y + y * direction_.vy.y;
+        // One of the two is the same for all rays.
+        const Affine& varying = perspective_ ? direction_ : origin_;
+        const Double4 vx = varying.v0.x + x * varying.vx.x + y * varying.vy.x;
+        const Double4 vy = varying.v0.y + x * varying.vx.y + y * varying.vy.y;
+        Double4 ox = perspective_ ? origin_.v0.x + Double4{} : vx;
+        Double4 oy = perspective_ ? origin_.v0.y + Double4{} : vy;
+        Double4 dx = perspective_ ? vx : direction_.v0.x + Double4{};
+        Double4 dy = perspective_ ? vy : direction_.v0.y + Double4{};
         if (lens) {
             const Double4 qx = lens_radius_ * widened(block.lens_x.data() + s);
             const Double4 qy = lens_radius_ * widened(block.lens_y.data() + s);

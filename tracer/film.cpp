@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/film.h"
 
+#include "tracer/gather.h"
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -13,23 +15,9 @@ namespace trace {
 
 namespace {
 
-constexpr int min_bucket_px = 4, max_bucket_px = 256;
+constexpr int min_bucket_px = 4;
 constexpr std::size_t max_pixels = std::size_t{1} << 28;
 constexpr std::size_t max_bucket_samples = std::size_t{1} << 20;
-
-// Four floats in a register. A Sample is two of them.
-using Float4 [[gnu::vector_size(16), gnu::may_alias]] = float;
-
-struct Sum {
-    Float4 low{}, high{};
-
-    void add(const Sample& sample, float weight) {
-        const auto* v = reinterpret_cast<const Float4*>(&sample);
-        low += v[0] * weight;
-        high += v[1] * weight;
-    }
-};
-static_assert(offsetof(Sample, opacity) == 12 && offsetof(Sample, one) == 24);
 
 std::size_t physical_bytes() {
     const long pages = ::sysconf(_SC_PHYS_PAGES), size = ::sysconf(_SC_PAGE_SIZE);
@@ -37,18 +25,9 @@ std::size_t physical_bytes() {
                                  : std::numeric_limits<std::size_t>::max();
 }
 
-// x - x is 0 for every finite x, NaN otherwise.
-bool finite(const Sample& s) {
-    const auto* v = reinterpret_cast<const Float4*>(&s);
-    const Float4 a = v[0] - v[0], b = v[1] - v[1];
-    const Float4 sum = a + b;
-    return sum[0] + sum[1] + sum[2] + sum[3] == 0;
-}
-
 } // namespace
 
-// --- settings
-// ---------------------------------------------------------------------------------------------------
+// --- settings ------------------------------------------------------------------------
 
 DepthFilter depth_filter(const rib::Options& options, base::Diag& diag) {
     const std::string name = options.hider_params.get_string("depthfilter", "min");
@@ -78,8 +57,7 @@ FilmSettings film_settings(const rib::Options& options, base::Diag& diag) {
     return s;
 }
 
-// --- buckets
-// ----------------------------------------------------------------------------------------------------
+// --- buckets -------------------------------------------------------------------------
 
 struct Film::Bucket {
     PixelRange output; // pixels it computes
@@ -207,8 +185,7 @@ bool Film::complete() const {
     return num_done_ == buckets_.size();
 }
 
-// --- samples
-// ----------------------------------------------------------------------------------------------------
+// --- samples -------------------------------------------------------------------------
 
 SampleBuffer Film::buffer(std::size_t bucket) {
     SampleBuffer out;
@@ -223,40 +200,20 @@ SampleBuffer Film::buffer(std::size_t bucket) {
     out.num_extra = settings_.num_extra;
     const std::size_t n = out.pixels.area() * static_cast<std::size_t>(sampler_.per_pixel());
     out.samples.assign(n, Sample{});
-    out.z.assign(n, uncovered_z);
     out.extra.assign(n * static_cast<std::size_t>(settings_.num_extra), 0.0f);
     return out;
 }
 
 namespace {
 
-// Replaces what is not finite; returns how many samples were.
-std::uint64_t sanitise(SampleBuffer& buffer) {
-    std::uint64_t bad = 0;
-    for (std::size_t i = 0; i < buffer.samples.size(); ++i) {
-        if (!finite(buffer.samples[i])) {
-            buffer.samples[i] = Sample{};
-            ++bad;
-        }
-        if (std::isnan(buffer.z[i])) {
-            buffer.z[i] = uncovered_z;
-        }
-    }
-    for (float& value : buffer.extra) {
-        value = std::isfinite(value) ? value : 0;
-    }
-    return bad;
-}
-
 std::size_t bytes_of(const SampleBuffer& b) {
-    return b.samples.size() * sizeof(Sample) + (b.z.size() + b.extra.size()) * sizeof(float);
+    return b.samples.size() * sizeof(Sample) + b.extra.size() * sizeof(float);
 }
 
 } // namespace
 
 void Film::submit(std::size_t bucket, SampleBuffer&& samples) {
     assert(samples.pixels == buckets_[bucket].owned);
-    num_bad_ += sanitise(samples);
     const auto near = neighbours(bucket);
     std::vector<std::size_t> ready;
     {
@@ -289,151 +246,12 @@ void Film::release(std::size_t bucket) {
     }
 }
 
-// --- filtering
-// --------------------------------------------------------------------------------------------------
-
-// The pixels around a bucket, with their samples: one lookup per pixel instead of one per pixel and
-// neighbour.
-struct Film::SourcePixel {
-    const SampleBuffer* buffer = nullptr;
-    std::size_t first = 0; // sample
-    std::size_t pattern = 0;
-};
-
-struct Film::Sources {
-    PixelRange pixels;
-    std::vector<SourcePixel> table;
-
-    [[nodiscard]] std::size_t index(int x, int y) const {
-        return static_cast<std::size_t>(y - pixels.y0) * static_cast<std::size_t>(pixels.width()) +
-               static_cast<std::size_t>(x - pixels.x0);
-    }
-    [[nodiscard]] const SourcePixel& at(int x, int y) const { return table[index(x, y)]; }
-};
-
-Film::Sources Film::sources(std::size_t bucket) const {
-    Sources out;
-    out.pixels = buckets_[bucket].output.grown(weights_.reach_x(), weights_.reach_y());
-    out.table.resize(out.pixels.area());
-    const auto per_pixel = static_cast<std::size_t>(sampler_.per_pixel());
-    for (const std::size_t n : neighbours(bucket)) {
-        const SampleBuffer& buffer = buckets_[n].samples;
-        const PixelRange common = buffer.pixels.intersected(out.pixels);
-        for (int y = common.y0; y < common.y1; ++y) {
-            for (int x = common.x0; x < common.x1; ++x) {
-                const std::size_t index = static_cast<std::size_t>(y - buffer.pixels.y0) *
-                                              static_cast<std::size_t>(buffer.pixels.width()) +
-                                          static_cast<std::size_t>(x - buffer.pixels.x0);
-                out.table[out.index(x, y)] = {&buffer, index * per_pixel, sampler_.pattern(x, y)};
-            }
-        }
-    }
-    return out;
-}
-
-// Calls body(source, weights, first, last) for the samples of every neighbour, in the one order
-// there is.
-template <class Body>
-void Film::for_neighbours(const Sources& from, int x, int y, const Body& body) const {
-    std::size_t k = 0;
-    for (int dy = -weights_.reach_y(); dy <= weights_.reach_y(); ++dy) {
-        for (int dx = -weights_.reach_x(); dx <= weights_.reach_x(); ++dx, ++k) {
-            const SourcePixel& source = from.at(x + dx, y + dy);
-            const FilterWeights::Span span = weights_.span(source.pattern, k);
-            body(source, weights_.weights(source.pattern, k), span.first, span.last);
-        }
-    }
-}
-
 void Film::filter_bucket(std::size_t bucket) {
-    const Sources from = sources(bucket);
-    const PixelRange& out = buckets_[bucket].output;
-    for (int y = out.y0; y < out.y1; ++y) {
-        for (int x = out.x0; x < out.x1; ++x) {
-            filter_pixel(from, x, y);
-        }
+    Gather gather(sampler_, weights_, settings_, buckets_[bucket].output);
+    for (const std::size_t n : neighbours(bucket)) {
+        gather.add(buckets_[n].samples);
     }
-}
-
-void Film::filter_pixel(const Sources& from, int x, int y) {
-    Sum sum;
-    for_neighbours(from, x, y, [&](const SourcePixel& source, const float* w, int first, int last) {
-        const Sample* samples = source.buffer->samples.data() + source.first;
-        for (int s = first; s < last; ++s) {
-            sum.add(samples[s], w[s]);
-        }
-    });
-    const SourcePixel& own = from.at(x, y);
-    // A filter narrower than the spacing of samples, or one with negative lobes and few samples,
-    // may leave nothing to divide by: the pixel is then the plain mean of its own samples.
-    const bool plain = !(sum.high[2] >= weights_.least_sum());
-    if (plain) {
-        sum = {};
-        for (int s = 0; s < sampler_.per_pixel(); ++s) {
-            sum.add(own.buffer->samples[own.first + static_cast<std::size_t>(s)], 1);
-        }
-    }
-    const Float4 low = sum.low / sum.high[2], high = sum.high / sum.high[2];
-    const std::size_t at = static_cast<std::size_t>(y - image_.pixels.y0) *
-                               static_cast<std::size_t>(image_.pixels.width()) +
-                           static_cast<std::size_t>(x - image_.pixels.x0);
-    image_.plane(Plane::R)[at] = low[0];
-    image_.plane(Plane::G)[at] = low[1];
-    image_.plane(Plane::B)[at] = low[2];
-    image_.plane(Plane::OR)[at] = low[3];
-    image_.plane(Plane::OG)[at] = high[0];
-    image_.plane(Plane::OB)[at] = high[1];
-    image_.plane(Plane::A)[at] = (low[3] + high[0] + high[1]) / 3;
-    image_.plane(Plane::Z)[at] = depth(own);
-    for (int c = 0; c < settings_.num_extra; ++c) {
-        image_.extra[static_cast<std::size_t>(c)][at] = extra_channel(from, x, y, c, plain);
-    }
-}
-
-// Of the pixel's own covered samples; ri.md 9: depth bypasses the filter.
-float Film::depth(const SourcePixel& own) const {
-    const float* z = own.buffer->z.data() + own.first;
-    const int n = sampler_.per_pixel();
-    if (settings_.depth == DepthFilter::Min) {
-        return *std::min_element(z, z + n);
-    }
-    double sum = 0;
-    float largest = -uncovered_z;
-    int covered = 0;
-    for (int s = 0; s < n; ++s) {
-        if (z[s] < uncovered_z) {
-            sum += static_cast<double>(z[s]);
-            largest = std::max(largest, z[s]);
-            ++covered;
-        }
-    }
-    if (covered == 0) {
-        return uncovered_z;
-    }
-    return settings_.depth == DepthFilter::Max ? largest : static_cast<float>(sum / covered);
-}
-
-float Film::extra_channel(const Sources& from, int x, int y, int channel, bool plain) const {
-    const auto stride = static_cast<std::size_t>(settings_.num_extra);
-    float sum = 0, total = 0;
-    const auto add = [&](const SourcePixel& source, int s, float weight) {
-        const std::size_t index = source.first + static_cast<std::size_t>(s);
-        sum += weight * source.buffer->extra[index * stride + static_cast<std::size_t>(channel)];
-        total += weight;
-    };
-    if (plain) {
-        for (int s = 0; s < sampler_.per_pixel(); ++s) {
-            add(from.at(x, y), s, 1);
-        }
-    } else {
-        for_neighbours(from, x, y,
-                       [&](const SourcePixel& source, const float* w, int first, int last) {
-                           for (int s = first; s < last; ++s) {
-                               add(source, s, w[s]);
-                           }
-                       });
-    }
-    return sum / total;
+    num_bad_ += gather.run(image_);
 }
 
 } // namespace trace

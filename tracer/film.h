@@ -32,7 +32,7 @@ struct alignas(32) Sample {
     float color[3] = {0, 0, 0};
     float opacity[3] = {0, 0, 0};
     float one = 1; // summed along with the rest: gives the sum of the weights. Leave it alone.
-    float spare = 0;
+    float z = std::numeric_limits<float>::infinity(); // camera depth of what counts for depth
 };
 static_assert(sizeof(Sample) == 32);
 
@@ -40,7 +40,6 @@ static_assert(sizeof(Sample) == 32);
 struct SampleBuffer {
     PixelRange pixels;
     std::vector<Sample> samples;
-    std::vector<float> z;     // camera depth; infinity where uncovered
     int num_extra = 0;        // further channels (AOVs) per sample
     std::vector<float> extra; // [sample][channel]
 };
@@ -65,6 +64,8 @@ struct Image {
 
 // Depth of a pixel without covered samples.
 constexpr float uncovered_z = std::numeric_limits<float>::infinity();
+
+constexpr int max_bucket_px = 256; // on a side
 
 struct FilmSettings {
     int bucket_x = 16, bucket_y = 16; // pixels
@@ -93,7 +94,7 @@ public:
     // A buffer for a bucket, every sample uncovered. Thread-safe.
     [[nodiscard]] SampleBuffer buffer(std::size_t bucket);
     // Hands the samples of a bucket over. Filters every bucket that became complete. Thread-safe.
-    // Samples that are not finite are replaced by 0 and counted.
+    // Samples that are not finite count as uncovered; see num_bad_samples().
     void submit(std::size_t bucket, SampleBuffer&& samples);
 
     [[nodiscard]] bool complete() const;
@@ -108,21 +109,12 @@ public:
 
 private:
     struct Bucket;
-    struct Sources;
-    struct SourcePixel;
     Film(const Raster& raster, const Sampler& sampler, const FilterWeights& weights,
          const FilmSettings& settings);
     void make_buckets(const PixelRange& rendered);
     [[nodiscard]] std::vector<std::size_t> neighbours(std::size_t bucket) const;
     void release(std::size_t bucket);
-    [[nodiscard]] Sources sources(std::size_t bucket) const;
-    template <class Body>
-    void for_neighbours(const Sources& from, int x, int y, const Body& body) const;
     void filter_bucket(std::size_t bucket);
-    void filter_pixel(const Sources& from, int x, int y);
-    [[nodiscard]] float depth(const SourcePixel& own) const;
-    [[nodiscard]] float extra_channel(const Sources& from, int x, int y, int channel,
-                                      bool plain) const;
 
     const Sampler& sampler_;
     const FilterWeights& weights_;

@@ -99,7 +99,7 @@ void noise_scene(const SampleBlock& b, std::size_t i, SampleBuffer& out) {
         out.samples[i].color[c] = static_cast<float>((h >> (8 * c)) & 255U) / 100.0f;
         out.samples[i].opacity[c] = static_cast<float>((h >> (7 * c + 1)) & 63U) / 63.0f;
     }
-    out.z[i] = static_cast<float>(h >> 20) + 1;
+    out.samples[i].z = static_cast<float>(h >> 20) + 1;
     if (out.num_extra > 0) {
         out.extra[i] = static_cast<float>(h & 1023U);
     }
@@ -115,7 +115,7 @@ Scene coverage(std::function<bool(double, double)> inside) {
     return [inside = std::move(inside)](const SampleBlock& b, std::size_t i, SampleBuffer& out) {
         if (inside(b.px[i] + double(b.x[i]), b.py[i] + double(b.y[i]))) {
             set_all(out.samples[i], 1);
-            out.z[i] = 3;
+            out.samples[i].z = 3;
         }
     };
 }
@@ -151,7 +151,7 @@ TEST(Film, ConstantsReproduce) {
         const auto whole = render(job, [](const SampleBlock&, std::size_t i, SampleBuffer& out) {
             set_all(out.samples[i], 1);
             out.samples[i].color[1] = 0.3f;
-            out.z[i] = 7;
+            out.samples[i].z = 7;
         });
         for (std::size_t i = 0; i < 400; ++i) {
             EXPECT_EQ(whole.image.plane(Plane::R)[i], 1)
@@ -225,7 +225,6 @@ TEST(Film, PixelIsTheWeightedMeanOfItsNeighbourhood) {
     sampler.fill({-3, -3, 15, 14}, block);
     SampleBuffer samples;
     samples.samples.resize(block.count);
-    samples.z.resize(block.count);
     for (std::size_t i = 0; i < block.count; ++i) {
         noise_scene(block, i, samples);
     }
@@ -302,7 +301,7 @@ TEST(Film, DepthOfOwnSamples) {
     const Scene scene = [](const SampleBlock& b, std::size_t i, SampleBuffer& out) {
         if (b.px[i] > 0) { // pixel 0 is uncovered
             const std::size_t s = i % 4;
-            out.z[i] = s == 3 ? trace::uncovered_z : static_cast<float>(s + 1);
+            out.samples[i].z = s == 3 ? trace::uncovered_z : static_cast<float>(s + 1);
             set_all(out.samples[i], 1);
         }
     };
@@ -332,10 +331,10 @@ TEST(Film, SamplesThatAreNotNumbersAreReplacedAndCounted) {
     const Outcome out = render({.xres = 6, .yres = 6},
                                [](const SampleBlock& b, std::size_t i, SampleBuffer& buffer) {
                                    set_all(buffer.samples[i], 1);
-                                   buffer.z[i] = 1;
+                                   buffer.samples[i].z = 1;
                                    if (b.px[i] == 3 && b.py[i] == 3 && i % 4 == 0) {
                                        buffer.samples[i].color[1] = NAN;
-                                       buffer.z[i] = NAN;
+                                       buffer.samples[i].z = NAN;
                                    }
                                    if (b.px[i] == 3 && b.py[i] == 3 && i % 4 == 1) {
                                        buffer.samples[i].opacity[2] = -INFINITY;

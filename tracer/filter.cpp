@@ -206,7 +206,7 @@ FilterWeights::FilterWeights(const Filter& filter, const Sampler& sampler)
                         weights_.data() + p * neighbours() * n + s);
         }
         for (std::size_t k = 0; k < neighbours(); ++k) {
-            spans_[p * neighbours() + k] = used_span({weights(p, k), n});
+            spans_[p * neighbours() + k] = used_span({weights(p * neighbours() + k), n});
         }
     }
 }

@@ -58,14 +58,12 @@ public:
     struct Span {
         std::uint16_t first = 0, last = 0;
     };
-    // Neighbours are numbered row by row: number (dy + reach_y) * (2 reach_x + 1) + dx + reach_x is
-    // the pixel at (dx, dy) from the one being computed; `pattern` is that of the neighbour.
-    [[nodiscard]] Span span(std::size_t pattern, std::size_t neighbour) const {
-        return spans_[pattern * neighbours() + neighbour];
-    }
-    [[nodiscard]] const float* weights(std::size_t pattern, std::size_t neighbour) const {
-        return weights_.data() +
-               (pattern * neighbours() + neighbour) * static_cast<std::size_t>(per_pixel_);
+    // A slot is pattern * neighbours() + neighbour; neighbours are numbered row by row: number
+    // (dy + reach_y) * (2 reach_x + 1) + dx + reach_x is the pixel at (dx, dy) from the one being
+    // computed, and `pattern` is that of the neighbour.
+    [[nodiscard]] Span span(std::size_t slot) const { return spans_[slot]; }
+    [[nodiscard]] const float* weights(std::size_t slot) const {
+        return weights_.data() + slot * static_cast<std::size_t>(per_pixel_);
     }
     // A sum of weights below this says nothing: 1/1000 of the filter's centre.
     [[nodiscard]] float least_sum() const { return floor_; }

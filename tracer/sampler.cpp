@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <numbers>
 #include <numeric>
 #include <string>
@@ -19,23 +20,19 @@ constexpr int pattern_budget = 4096;
 constexpr int min_patterns = 16;
 constexpr float below_one = 0x1.fffffep-1f;
 
-// What a hash is for; different uses must not correlate.
-enum class Use : std::uint32_t { Position, Time, Lens, Seed };
+constexpr auto mix = PixelHash::mix;
+constexpr std::uint32_t golden = 0x9e3779b9U;
 
-// A bijection of 32 bits with low bias (C. Wellons' "lowbias32" constants).
-std::uint32_t mix(std::uint32_t x) {
-    x = (x ^ (x >> 16)) * 0x7feb352dU;
-    x = (x ^ (x >> 15)) * 0x846ca68bU;
-    return x ^ (x >> 16);
+// What a hash is for; different uses must not correlate.
+enum class Use : std::uint32_t { Position, Time, Lens };
+
+// Another hash of the same pixel.
+std::uint32_t derived(std::uint32_t pixel_hash, Use use) {
+    return mix(pixel_hash + golden * static_cast<std::uint32_t>(use));
 }
 
 std::uint32_t hash(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-    return mix(a + 0x9e3779b9U * mix(b + 0x85ebca6bU * mix(c + 1)));
-}
-
-std::uint32_t pixel_hash(int px, int py, Use use) {
-    return hash(static_cast<std::uint32_t>(px), static_cast<std::uint32_t>(py),
-                static_cast<std::uint32_t>(use));
+    return mix(a + golden * mix(b + 0x85ebca6bU * mix(c + 1)));
 }
 
 // The random numbers of one pattern of one table, in a fixed order.
@@ -188,10 +185,6 @@ Sampler::Sampler(const SamplerSettings& settings)
     }
 }
 
-std::size_t Sampler::pattern(int px, int py) const {
-    return pixel_hash(px, py, Use::Position) & pattern_mask_;
-}
-
 std::span<const float> Sampler::slice(const std::vector<float>& table, std::size_t pattern) const {
     const auto n = static_cast<std::size_t>(per_pixel_);
     return std::span(table).subspan(pattern * n, n);
@@ -204,28 +197,45 @@ std::span<const float> Sampler::pattern_y(std::size_t pattern) const {
     return slice(y_, pattern);
 }
 
-void Sampler::fill_pixel(int px, int py, std::size_t at, SampleBlock& out) const {
+namespace {
+
+// A few values: cheaper than a call of memcpy.
+template <class T> void copy_few(const T* from, std::size_t n, T* to) {
+    std::size_t i = 0;
+    for (; i + 4 <= n; i += 4) {
+        std::memcpy(to + i, from + i, 4 * sizeof(T));
+    }
+    for (; i < n; ++i) {
+        to[i] = from[i];
+    }
+}
+
+} // namespace
+
+void Sampler::fill_row(int py, std::size_t at, SampleBlock& out) const {
     const auto n = static_cast<std::size_t>(per_pixel_);
-    const auto copy = [&](const std::vector<float>& table, std::size_t pattern,
+    const auto copy = [&](const std::vector<float>& table, std::uint32_t h,
                           std::vector<float>& to) {
-        std::copy_n(table.data() + pattern * n, n, to.data() + at);
+        copy_few(table.data() + pattern(h) * n, n, to.data() + at);
     };
-    const std::size_t position = pattern(px, py);
-    copy(x_, position, out.x);
-    copy(y_, position, out.y);
-    if (moving_) {
-        copy(time_, pixel_hash(px, py, Use::Time) & pattern_mask_, out.time);
-    }
-    if (settings_.wants_lens) {
-        const std::size_t lens = pixel_hash(px, py, Use::Lens) & pattern_mask_;
-        copy(lens_x_, lens, out.lens_x);
-        copy(lens_y_, lens, out.lens_y);
-    }
-    const std::uint32_t seed = pixel_hash(px, py, Use::Seed);
-    std::fill_n(out.px.data() + at, n, px);
-    std::fill_n(out.py.data() + at, n, py);
-    for (std::size_t s = 0; s < n; ++s) {
-        out.seed[at + s] = mix(seed + 0x9e3779b9U * static_cast<std::uint32_t>(s));
+    const PixelHash row(py);
+    for (int px = out.pixels.x0; px < out.pixels.x1; ++px, at += n) {
+        const std::uint32_t h = row(px);
+        copy(x_, h, out.x);
+        copy(y_, h, out.y);
+        if (moving_) {
+            copy(time_, derived(h, Use::Time), out.time);
+        }
+        if (settings_.wants_lens) {
+            const std::uint32_t lens = derived(h, Use::Lens);
+            copy(lens_x_, lens, out.lens_x);
+            copy(lens_y_, lens, out.lens_y);
+        }
+        for (std::size_t s = 0; s < n; ++s) {
+            out.px[at + s] = px;
+            out.py[at + s] = py;
+            out.seed[at + s] = h + golden * static_cast<std::uint32_t>(s + 8);
+        }
     }
 }
 
@@ -246,11 +256,12 @@ void Sampler::fill(const PixelRange& pixels, SampleBlock& out) const {
         std::fill(out.time.begin(), out.time.end(), settings_.shutter_open);
     }
     std::size_t at = 0;
-    for (int py = pixels.y0; py < pixels.y1; ++py) {
-        for (int px = pixels.x0; px < pixels.x1; ++px) {
-            fill_pixel(px, py, at, out);
-            at += static_cast<std::size_t>(per_pixel_);
-        }
+    const std::size_t row = static_cast<std::size_t>(pixels.width() * per_pixel_);
+    for (int py = pixels.y0; py < pixels.y1; ++py, at += row) {
+        fill_row(py, at, out);
+    }
+    for (std::uint32_t& seed : out.seed) {
+        seed = mix(seed);
     }
     const auto pad = [&](auto& values) {
         if (!values.empty() && out.count > 0) {

@@ -44,6 +44,23 @@ struct SampleBlock {
     [[nodiscard]] std::size_t num_packets() const { return (count + 7) / 8; }
 };
 
+// 32 bits of a pixel; everything random about it starts here. The row's part is done once.
+class PixelHash {
+public:
+    explicit PixelHash(int py) : row_(mix(static_cast<std::uint32_t>(py) + 0x85ebca6bU)) {}
+    std::uint32_t operator()(int px) const { return mix(static_cast<std::uint32_t>(px) + row_); }
+
+    // A bijection of 32 bits with low bias (C. Wellons' "lowbias32" constants).
+    static constexpr std::uint32_t mix(std::uint32_t x) {
+        x = (x ^ (x >> 16)) * 0x7feb352dU;
+        x = (x ^ (x >> 15)) * 0x846ca68bU;
+        return x ^ (x >> 16);
+    }
+
+private:
+    std::uint32_t row_;
+};
+
 class Sampler {
 public:
     explicit Sampler(const SamplerSettings& settings);
@@ -54,16 +71,18 @@ public:
     // Reuses the block's memory.
     void fill(const PixelRange& pixels, SampleBlock& out) const;
 
-    // Positions: pattern of a pixel, and the per_pixel() offsets of a pattern.
+    // Positions: pattern of a pixel, by its hash, and the per_pixel() offsets of a pattern.
     [[nodiscard]] std::size_t num_patterns() const { return num_patterns_; }
-    [[nodiscard]] std::size_t pattern(int px, int py) const;
+    [[nodiscard]] std::size_t pattern(std::uint32_t pixel_hash) const {
+        return pixel_hash & pattern_mask_;
+    }
     [[nodiscard]] std::span<const float> pattern_x(std::size_t pattern) const;
     [[nodiscard]] std::span<const float> pattern_y(std::size_t pattern) const;
 
 private:
     [[nodiscard]] std::span<const float> slice(const std::vector<float>& table,
                                                std::size_t pattern) const;
-    void fill_pixel(int px, int py, std::size_t at, SampleBlock& out) const;
+    void fill_row(int py, std::size_t at, SampleBlock& out) const;
 
     SamplerSettings settings_;
     int per_pixel_ = 4;

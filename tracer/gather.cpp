@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracer/gather.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace trace {
+
+namespace {
+
+// Four floats in a register. A Sample is two of them.
+using Float4 [[gnu::vector_size(16), gnu::may_alias]] = float;
+
+const Float4* registers(const Sample& sample) {
+    return reinterpret_cast<const Float4*>(&sample);
+}
+static_assert(offsetof(Sample, opacity) == 12 && offsetof(Sample, one) == 24);
+
+} // namespace
+
+// Colour, opacity and weight; the lane of depth is not used.
+struct Gather::Sum {
+    Float4 low{}, high{};
+
+    void add(const Sample& sample, float weight) {
+        low += registers(sample)[0] * weight;
+        high += registers(sample)[1] * weight;
+    }
+    [[nodiscard]] float weight() const { return high[2]; }
+    // x - x is 0 for every finite x, NaN otherwise.
+    [[nodiscard]] bool finite() const {
+        const Float4 a = low - low, b = high - high;
+        return a[0] + a[1] + a[2] + a[3] + b[0] + b[1] == 0;
+    }
+};
+
+Gather::Gather(const Sampler& sampler, const FilterWeights& weights, const FilmSettings& settings,
+               const PixelRange& output)
+    : sampler_(sampler), weights_(weights), settings_(settings), output_(output),
+      pixels_(output.grown(weights.reach_x(), weights.reach_y())),
+      width_(static_cast<std::size_t>(pixels_.width())),
+      per_pixel_(static_cast<std::size_t>(sampler.per_pixel())), sources_(pixels_.area()) {
+    for (int dy = -weights.reach_y(); dy <= weights.reach_y(); ++dy) {
+        for (int dx = -weights.reach_x(); dx <= weights.reach_x(); ++dx) {
+            near_.push_back(static_cast<std::ptrdiff_t>(dy) * pixels_.width() + dx);
+        }
+    }
+}
+
+void Gather::add(const SampleBuffer& buffer) {
+    const PixelRange common = buffer.pixels.intersected(pixels_);
+    for (int y = common.y0; y < common.y1; ++y) {
+        add_row(buffer, y, common.x0, common.x1);
+    }
+}
+
+void Gather::add_row(const SampleBuffer& buffer, int y, int x0, int x1) {
+    const auto buffer_width = static_cast<std::size_t>(buffer.pixels.width());
+    std::size_t first = (static_cast<std::size_t>(y - buffer.pixels.y0) * buffer_width +
+                         static_cast<std::size_t>(x0 - buffer.pixels.x0)) *
+                        per_pixel_;
+    Source* to = &sources_[static_cast<std::size_t>(y - pixels_.y0) * width_ +
+                           static_cast<std::size_t>(x0 - pixels_.x0)];
+    const auto channels = static_cast<std::size_t>(buffer.num_extra);
+    const PixelHash hash(y);
+    for (int x = x0; x < x1; ++x, ++to, first += per_pixel_) {
+        *to = {buffer.samples.data() + first, buffer.extra.data() + first * channels,
+               sampler_.pattern(hash(x)) * weights_.neighbours()};
+    }
+}
+
+// Planes of one row of the bucket. The image's planes lie far apart: written pixel by pixel, each
+// store would wait for its own cache line.
+struct Gather::Row {
+    std::array<std::array<float, max_bucket_px>, static_cast<std::size_t>(Plane::Count)> planes;
+
+    void set(Plane plane, std::size_t x, float value) {
+        planes[static_cast<std::size_t>(plane)][x] = value;
+    }
+};
+
+std::uint64_t Gather::run(Image& image) const {
+    std::uint64_t bad = 0;
+    const auto count = static_cast<std::size_t>(output_.width());
+    Row row;
+    for (int y = output_.y0; y < output_.y1; ++y) {
+        const std::size_t at = static_cast<std::size_t>(y - image.pixels.y0) *
+                                   static_cast<std::size_t>(image.pixels.width()) +
+                               static_cast<std::size_t>(output_.x0 - image.pixels.x0);
+        const Source* own = &sources_[static_cast<std::size_t>(y - pixels_.y0) * width_ +
+                                      static_cast<std::size_t>(output_.x0 - pixels_.x0)];
+        for (std::size_t x = 0; x < count; ++x) {
+            bad += pixel(own + x, row, x, image, at + x);
+        }
+        for (std::size_t p = 0; p < row.planes.size(); ++p) {
+            std::copy_n(row.planes[p].begin(), count, image.planes[p].data() + at);
+        }
+    }
+    return bad;
+}
+
+// Calls body(source, sample, weight) for all samples in reach, in the one order there is.
+template <class Body> void Gather::for_samples(const Source* own, const Body& body) const {
+    for (std::size_t k = 0; k < near_.size(); ++k) {
+        const Source& source = own[near_[k]];
+        const FilterWeights::Span span = weights_.span(source.slot + k);
+        const float* w = weights_.weights(source.slot + k);
+        for (std::size_t s = span.first; s < span.last; ++s) {
+            body(source, s, w[s]);
+        }
+    }
+}
+
+Gather::Sum Gather::filtered(const Source* own) const {
+    Sum sum;
+    for_samples(own, [&](const Source& source, std::size_t s, float weight) {
+        sum.add(source.samples[s], weight);
+    });
+    return sum;
+}
+
+// The same with samples that are not finite taken as uncovered. plain: the mean of the own samples.
+Gather::Sum Gather::careful(const Source* own, bool plain) const {
+    Sum sum;
+    const auto add = [&](const Source& source, std::size_t s, float weight) {
+        Sum alone;
+        alone.add(source.samples[s], 1);
+        sum.add(alone.finite() ? source.samples[s] : Sample{}, weight);
+    };
+    if (plain) {
+        for (std::size_t s = 0; s < per_pixel_; ++s) {
+            add(*own, s, 1);
+        }
+    } else {
+        for_samples(own, add);
+    }
+    return sum;
+}
+
+std::uint64_t Gather::pixel(const Source* own, Row& row, std::size_t x, Image& image,
+                            std::size_t at) const {
+    Sum sum = filtered(own);
+    std::uint64_t bad = 0;
+    // A filter narrower than the spacing of samples, or one with negative lobes and few samples,
+    // may leave nothing to divide by: the pixel is then the plain mean of its own samples.
+    const bool plain = !(sum.weight() >= weights_.least_sum());
+    if (plain || !sum.finite()) {
+        sum = careful(own, plain);
+        for (std::size_t s = 0; s < per_pixel_; ++s) {
+            Sum alone;
+            alone.add(own->samples[s], 1);
+            bad += alone.finite() ? 0 : 1;
+        }
+    }
+    const float total = sum.weight();
+    const Float4 low = sum.low / total, high = sum.high / total;
+    row.set(Plane::R, x, low[0]);
+    row.set(Plane::G, x, low[1]);
+    row.set(Plane::B, x, low[2]);
+    row.set(Plane::OR, x, low[3]);
+    row.set(Plane::OG, x, high[0]);
+    row.set(Plane::OB, x, high[1]);
+    row.set(Plane::A, x, (low[3] + high[0] + high[1]) / 3);
+    row.set(Plane::Z, x, depth(*own));
+    for (std::size_t c = 0; c < image.extra.size(); ++c) {
+        image.extra[c][at] = extra_channel(own, c, plain);
+    }
+    return bad;
+}
+
+// Of the pixel's own covered samples; ri.md 9: depth bypasses the filter. NaN counts as uncovered.
+float Gather::depth(const Source& own) const {
+    float nearest = uncovered_z, farthest = -uncovered_z;
+    if (settings_.depth == DepthFilter::Min) {
+        for (std::size_t s = 0; s < per_pixel_; ++s) {
+            nearest = own.samples[s].z < nearest ? own.samples[s].z : nearest;
+        }
+        return nearest;
+    }
+    double sum = 0;
+    int covered = 0;
+    for (std::size_t s = 0; s < per_pixel_; ++s) {
+        const float z = own.samples[s].z;
+        if (z < uncovered_z) {
+            sum += static_cast<double>(z);
+            farthest = std::max(farthest, z);
+            ++covered;
+        }
+    }
+    if (covered == 0) {
+        return uncovered_z;
+    }
+    return settings_.depth == DepthFilter::Max ? farthest : static_cast<float>(sum / covered);
+}
+
+float Gather::extra_channel(const Source* own, std::size_t channel, bool plain) const {
+    const auto stride = static_cast<std::size_t>(settings_.num_extra);
+    float sum = 0, total = 0;
+    const auto add = [&](const Source& source, std::size_t s, float weight) {
+        const float value = source.extra[s * stride + channel];
+        sum += std::isfinite(value) ? weight * value : 0;
+        total += weight;
+    };
+    if (plain) {
+        for (std::size_t s = 0; s < per_pixel_; ++s) {
+            add(*own, s, 1);
+        }
+    } else {
+        for_samples(own, add);
+    }
+    return sum / total;
+}
+
+} // namespace trace

@@ -71,7 +71,7 @@ void CFile::head() {
     out_.line("/* " + std::string(shader_type_name(program_.shader_type)) + " " + program_.name +
               ", by slc from " + options_.source + " */");
     out_.line("#define SL_LANES " + std::to_string(options_.lanes));
-    out_.line("#include \"sl_shader.h\"");
+    out_.line("#include <sl_shader.h>");
     out_.line("");
 }
 

@@ -93,7 +93,10 @@ void Emitter::call(const Stmt& s, const Block& b) {
 
 // Built-ins read predefined variables from the batch: what the shader has changed must be there.
 void Emitter::refresh_planes(std::uint64_t reads, const Block& b) {
-    for (std::size_t i = 0; i < program_.vars.size() && mode_ == Mode::Shade; ++i) {
+    if ((reads & results_) == 0 || mode_ != Mode::Shade) {
+        return;
+    }
+    for (std::size_t i = 0; i < program_.vars.size(); ++i) {
         const Var& v = program_.vars[i];
         if (v.kind != VarKind::Global || (reads & results_ & std::uint64_t{1} << v.index) == 0 ||
             !flow_.place(static_cast<VarId>(i)).is_written ||

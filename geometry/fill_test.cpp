@@ -161,6 +161,23 @@ TEST(Fill, StepsFollowTheFootprint) {
     EXPECT_GT(none[1], 0);
     const auto nan = steps({1, 0, 0}, NAN);
     EXPECT_TRUE(nan[0] > 0 && nan[0] <= 0.25);
+    EXPECT_EQ(steps({1, 0, 0}, INFINITY)[0], 0.25);
+}
+
+// A polygon far smaller than a pixel still has the pixel's step, so that textures on it are
+// filtered.
+TEST(Fill, SmallPolygonsKeepTheFootprint) {
+    SceneBuilder b;
+    b.add(SceneBuilder::polygons({1}, {3}, {0, 1, 2}, {0, 0, 5, 0, 1e-4f, 5, 1e-4f, 0, 5}));
+    QuietDiag d;
+    const auto world = b.world(d.diag);
+    Hit hit;
+    hit.shape = 0;
+    hit.u = hit.v = 0.3f;
+    const Filled f(*world, {hit}, {{{0, 0, 0}, {0, 0, 1}}}, 0.02f);
+    EXPECT_FLOAT_EQ(f.at(SL_VAR_du, 0), 0.02f);
+    EXPECT_FLOAT_EQ(f.at(SL_VAR_s, 0, 0, 1), 0.02f);
+    EXPECT_FLOAT_EQ(f.at(SL_VAR_t, 0, 0, 2), 0.02f);
 }
 
 // The auxiliary records against differences of double evaluations, at offsets where float positions

@@ -117,7 +117,11 @@ public:
     [[nodiscard]] LocalPoint step(const LocalPoint& at, double du, double dv) const override;
     [[nodiscard]] SurfacePoint difference(const LocalPoint& at, const SurfacePoint& here, double du,
                                           double dv) const override;
-    [[nodiscard]] std::array<double, 2> max_step() const override { return {extent_, extent_}; }
+    // A plane goes on: polygons smaller than a pixel still have the pixel's step. The limit only
+    // keeps numbers sane.
+    [[nodiscard]] std::array<double, 2> max_step() const override {
+        return {1e6 * extent_, 1e6 * extent_};
+    }
     [[nodiscard]] ParamRange range() const override {
         return {box_.lo.x, box_.hi.x, box_.lo.y, box_.hi.y};
     }

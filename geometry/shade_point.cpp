@@ -10,7 +10,7 @@ namespace {
 
 // 1/k^2 at the steepest: at grazing angles an auxiliary point is at most this factor further away.
 constexpr double least_sin2 = 1.0 / 256;
-// Steps are never 0, so that shaders may divide by du and dv.
+// Steps are never 0, so that shaders may divide by du and dv; relative to the parameter range.
 constexpr double least_step = 1e-7;
 
 constexpr std::uint64_t bit(sl_variable v) {
@@ -247,21 +247,24 @@ private:
             return {0, 0};
         }
         const std::array<double, 2> most = p.surface().max_step();
-        return {step(table_.cam_vector(p.hit, p.here.dPdu), most[0], i),
-                step(table_.cam_vector(p.hit, p.here.dPdv), most[1], i)};
+        const ParamRange range = p.surface().range();
+        return {step(table_.cam_vector(p.hit, p.here.dPdu), range.u1 - range.u0, most[0], i),
+                step(table_.cam_vector(p.hit, p.here.dPdv), range.v1 - range.v0, most[1], i)};
     }
 
-    [[nodiscard]] double step(const V3d& derivative, double most, std::size_t i) const {
-        const double footprint = i < r_.incident.footprint.size() ? r_.incident.footprint[i] : 0.0;
+    [[nodiscard]] double step(const V3d& derivative, double range, double most,
+                              std::size_t i) const {
+        const double given = i < r_.incident.footprint.size() ? r_.incident.footprint[i] : 0.0;
+        const double footprint = given > 0 ? given : 0;
         const V3d d = direction(i);
         const double speed = base::length(derivative), along = dot(d, derivative);
         const double scale = base::length(d) * speed;
         const double cosine = scale > 0 ? along / scale : 0;
         const double wanted =
             footprint / std::sqrt(std::max(1 - cosine * cosine, least_sin2)) / speed;
-        const double limited =
-            wanted < most ? wanted : most; // also for the NaN and infinity of speed 0
-        return static_cast<double>(static_cast<float>(std::max(limited, most * least_step)));
+        const double limited = wanted < most ? wanted : most; // also where the speed is 0
+        const double least = std::max(std::fabs(range) * least_step, 1e-20);
+        return static_cast<double>(static_cast<float>(std::max(limited, least)));
     }
 
     void fill_auxiliary(const Place& p, std::size_t i, double du, double dv,

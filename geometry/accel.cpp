@@ -53,11 +53,17 @@ struct Accel::Impl {
         for (const Placed& p : placed) {
             rtcReleaseGeometry(p.geometry);
         }
-        rtcReleaseScene(top.scene);
         for (const embree::Level& level : prototypes) {
-            rtcReleaseScene(level.scene);
+            if (level.scene) {
+                rtcReleaseScene(level.scene);
+            }
         }
-        rtcReleaseDevice(device);
+        if (top.scene) {
+            rtcReleaseScene(top.scene);
+        }
+        if (device) {
+            rtcReleaseDevice(device);
+        }
     }
 
     static void on_error(void* self, RTCError, const char* text) {
@@ -126,6 +132,10 @@ Accel::Accel(int num_threads, const View& view) : impl_(std::make_unique<Impl>()
         num_threads > 0 ? "threads=" + std::to_string(num_threads) : std::string();
     impl_->view = view;
     impl_->device = rtcNewDevice(config.c_str());
+    if (!impl_->device) { // out of memory: every ray misses, and error() says why
+        impl_->error = "no device could be made";
+        return;
+    }
     rtcSetDeviceErrorFunction(impl_->device, Impl::on_error, impl_.get());
     rtcSetDeviceMemoryMonitorFunction(impl_->device, Impl::on_memory, impl_.get());
 }
@@ -134,6 +144,9 @@ Accel::~Accel() = default;
 
 std::uint32_t Accel::add_prototype(std::span<const TraceItem> items) {
     embree::Level& level = impl_->prototypes.emplace_back();
+    if (!impl_->device) {
+        return 0;
+    }
     embree::build_level(impl_->device, impl_->view, items, level);
     rtcCommitScene(level.scene);
     return static_cast<std::uint32_t>(impl_->prototypes.size() - 1);
@@ -143,7 +156,7 @@ bool Accel::add_instance(std::uint32_t prototype, std::uint32_t instance,
                          const Mat4& cam_from_trace) {
     const auto trace_from_cam = base::inverse(cam_from_trace);
     const double limit = trace_from_cam ? source_limit(*trace_from_cam) : 0;
-    if (!(limit >= least_ray_limit) || !(source_limit(cam_from_trace) >= 1)) {
+    if (!impl_->device || !(limit >= least_ray_limit) || !(source_limit(cam_from_trace) >= 1)) {
         return false;
     }
     impl_->ray_limit = std::min(impl_->ray_limit, static_cast<float>(limit));
@@ -163,6 +176,9 @@ bool Accel::add_instance(std::uint32_t prototype, std::uint32_t instance,
 }
 
 void Accel::finish(std::span<const TraceItem> items) {
+    if (!impl_->device) {
+        return;
+    }
     embree::build_level(impl_->device, impl_->view, items, impl_->top);
     auto id = static_cast<unsigned>(impl_->top.geometries.size());
     for (const Impl::Placed& p : impl_->placed) {
@@ -222,7 +238,9 @@ void Accel::intersect(const RayPacket& rays, Hit* hits) const {
     valid_rays(rays, impl_->ray_limit, valid);
     load_query(rays, q);
     rtcInitIntersectContext(&context);
-    rtcIntersect8(valid, impl_->top.scene, &context, &q);
+    if (impl_->top.scene) {
+        rtcIntersect8(valid, impl_->top.scene, &context, &q);
+    }
     for (int i = 0; i < lanes; ++i) {
         impl_->to_hit(q, i, hits[i]);
     }
@@ -237,7 +255,9 @@ void Accel::intersect(std::span<const RayPacket> packets, Hit* hits) const {
         RTCRayHit8 q;
         valid_rays(rays, impl_->ray_limit, valid);
         load_query(rays, q);
-        rtcIntersect8(valid, impl_->top.scene, &context, &q);
+        if (impl_->top.scene) {
+            rtcIntersect8(valid, impl_->top.scene, &context, &q);
+        }
         for (int i = 0; i < lanes; ++i) {
             impl_->to_hit(q, i, *hits++);
         }
@@ -251,7 +271,9 @@ std::uint32_t Accel::occluded(const RayPacket& rays) const {
     valid_rays(rays, impl_->ray_limit, valid);
     load_rays(rays, q);
     rtcInitIntersectContext(&context);
-    rtcOccluded8(valid, impl_->top.scene, &context, &q);
+    if (impl_->top.scene) {
+        rtcOccluded8(valid, impl_->top.scene, &context, &q);
+    }
     std::uint32_t bits = 0;
     for (int i = 0; i < lanes; ++i) {
         bits |= (valid[i] == -1 && q.tfar[i] < 0 ? 1u : 0u) << i;

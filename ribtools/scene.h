@@ -322,8 +322,10 @@ struct Options {
     float shutter_open = 0, shutter_close = 0;
     float pixel_variance = 0; // 0: not given
     int xsamples = 2, ysamples = 2;
+    base::SourcePos samples_pos; // of PixelSamples, for messages about it
     std::string filter = "gaussian";
     float filter_width[2] = {2, 2};
+    base::SourcePos filter_pos; // of PixelFilter
     float gain = 1, gamma = 1;
     ShaderId imager = none;
     Quantize color_quantize;

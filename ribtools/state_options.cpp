@@ -154,6 +154,7 @@ void State::do_PixelSamples(Request& request) {
     };
     options_.xsamples = samples(request.real(0));
     options_.ysamples = samples(request.real(1));
+    options_.samples_pos = request.pos;
 }
 
 void State::do_PixelFilter(Request& request) {
@@ -183,6 +184,7 @@ void State::do_PixelFilter(Request& request) {
     options_.filter = name;
     options_.filter_width[0] = request.real(1);
     options_.filter_width[1] = request.real(2);
+    options_.filter_pos = request.pos;
 }
 
 void State::do_Exposure(Request& request) {

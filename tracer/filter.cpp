@@ -127,27 +127,27 @@ std::string known_filters() {
     return text;
 }
 
-const FilterRow* find_filter(std::string_view name, base::Diag& diag) {
+const FilterRow* find_filter(std::string_view name, base::Diag& diag, base::SourcePos pos) {
     for (const FilterRow& row : filters) {
         if (row.name == name) {
             return &row;
         }
     }
-    diag.report(base::Severity::Error, base::Code::BadToken, {},
+    diag.report(base::Severity::Error, base::Code::BadToken, pos,
                 "PixelFilter: no filter is called \"" + std::string(name) +
                     "\"; using gaussian. Known: " + known_filters());
     return &filters[0];
 }
 
-double checked_width(float width, base::Diag& diag) {
+double checked_width(float width, base::Diag& diag, base::SourcePos pos) {
     if (!(width > 0) || !std::isfinite(width)) {
-        diag.report(base::Severity::Error, base::Code::Range, {},
+        diag.report(base::Severity::Error, base::Code::Range, pos,
                     "PixelFilter: widths must be positive; using 2 instead of " +
                         std::to_string(width));
         return 2;
     }
     if (width > max_width_px) {
-        diag.report(base::Severity::Warning, base::Code::Limit, {},
+        diag.report(base::Severity::Warning, base::Code::Limit, pos,
                     "PixelFilter: width " + std::to_string(width) + " is limited to " +
                         std::to_string(static_cast<int>(max_width_px)) + " pixels");
         return max_width_px;
@@ -162,9 +162,10 @@ int reach(double width) {
 
 } // namespace
 
-Filter::Filter(std::string_view name, float width_x_px, float width_y_px, base::Diag& diag)
-    : row_(find_filter(name, diag)), width_x_(checked_width(width_x_px, diag)),
-      width_y_(checked_width(width_y_px, diag)) {}
+Filter::Filter(std::string_view name, float width_x_px, float width_y_px, base::Diag& diag,
+               base::SourcePos pos)
+    : row_(find_filter(name, diag, pos)), width_x_(checked_width(width_x_px, diag, pos)),
+      width_y_(checked_width(width_y_px, diag, pos)) {}
 
 std::string_view Filter::name() const {
     return row_->name;

@@ -22,9 +22,10 @@ struct FilterRow; // one row of the table of filters
 
 class Filter {
 public:
-    // Unknown names and impossible widths are reported; the default (gaussian 2 2) or a clamped
-    // width is used.
-    Filter(std::string_view name, float width_x_px, float width_y_px, base::Diag& diag);
+    // Unknown names and impossible widths are reported at pos; the default (gaussian 2 2) or a
+    // clamped width is used.
+    Filter(std::string_view name, float width_x_px, float width_y_px, base::Diag& diag,
+           base::SourcePos pos = {});
 
     [[nodiscard]] std::string_view name() const;
     [[nodiscard]] double width_x() const { return width_x_; }

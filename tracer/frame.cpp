@@ -99,7 +99,7 @@ FrameResult Frame::render(Image& image) const {
     const rib::Options& options = scene_.options;
     const Sampler sampler(sampler_settings(options, tools_.diag));
     const Filter filter(options.filter, options.filter_width[0], options.filter_width[1],
-                        tools_.diag);
+                        tools_.diag, options.filter_pos);
     const FilterWeights weights(filter, sampler);
     const std::unique_ptr<Film> film = Film::create(
         camera_.raster(), sampler, weights, film_settings(options, tools_.diag), tools_.diag);

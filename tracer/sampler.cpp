@@ -146,7 +146,7 @@ SamplerSettings sampler_settings(const rib::Options& options, base::Diag& diag) 
         larger = (larger + 1) / 2;
     }
     if (s.nx < options.xsamples || s.ny < options.ysamples) {
-        diag.report(base::Severity::Warning, base::Code::Limit, {},
+        diag.report(base::Severity::Warning, base::Code::Limit, options.samples_pos,
                     "PixelSamples: at most " + std::to_string(max_per_pixel) +
                         " samples per pixel; using " + std::to_string(s.nx) + " " +
                         std::to_string(s.ny));

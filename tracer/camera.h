@@ -108,6 +108,7 @@ private:
     void clip_half_space(Ray& ray, const Plane& plane) const;
     [[nodiscard]] Ray lens_ray(Ray ray, float lens_x, float lens_y) const;
     void make_simple_packet(const SampleBlock& block, std::size_t first, geo::RayPacket& out) const;
+    void add_lens(const SampleBlock& block, std::size_t first, geo::RayPacket& out) const;
     void make_general_packet(const SampleBlock& block, std::size_t first,
                              geo::RayPacket& out) const;
 

@@ -140,39 +140,44 @@ Camera::Ray Camera::lens_ray(Ray ray, float lens_x, float lens_y) const {
 }
 
 // Rays that start in z = 0 with direction z = 1, so that t is camera z and Clipping needs no
-// arithmetic.
+// arithmetic. Perspective: the origins are equal and directions vary; otherwise the other way
+// round.
 void Camera::make_simple_packet(const SampleBlock& block, std::size_t first,
                                 geo::RayPacket& out) const {
-    const bool lens = lens_radius_ > 0 && !block.lens_x.empty();
-    for (std::size_t i = 0; i < geo::RayPacket::size; i += 4) {
+    constexpr int n = geo::RayPacket::size;
+    const Affine& varying = perspective_ ? direction_ : origin_;
+    const base::V3d& constant = perspective_ ? origin_.v0 : direction_.v0;
+    float* const to_x = perspective_ ? out.dx : out.ox;
+    float* const to_y = perspective_ ? out.dy : out.oy;
+    for (std::size_t i = 0; i < n; i += 4) {
         const std::size_t s = first + i;
         const Double4 x = widened(block.px.data() + s) + widened(block.x.data() + s);
         const Double4 y = widened(block.py.data() + s) + widened(block.y.data() + s);
-        // One of the two is the same for all rays.
-        const Affine& varying = perspective_ ? direction_ : origin_;
-        const Double4 vx = varying.v0.x + x * varying.vx.x + y * varying.vy.x;
-        const Double4 vy = varying.v0.y + x * varying.vx.y + y * varying.vy.y;
-        Double4 ox = perspective_ ? origin_.v0.x + Double4{} : vx;
-        Double4 oy = perspective_ ? origin_.v0.y + Double4{} : vy;
-        Double4 dx = perspective_ ? vx : direction_.v0.x + Double4{};
-        Double4 dy = perspective_ ? vy : direction_.v0.y + Double4{};
-        if (lens) {
-            const Double4 qx = lens_radius_ * widened(block.lens_x.data() + s);
-            const Double4 qy = lens_radius_ * widened(block.lens_y.data() + s);
-            ox += qx;
-            oy += qy;
-            dx -= qx / focal_distance_; // infinite: parallel to the pinhole ray
-            dy -= qy / focal_distance_;
-        }
-        store(out.ox + i, ox);
-        store(out.oy + i, oy);
-        store(out.dx + i, dx);
-        store(out.dy + i, dy);
+        store(to_x + i, varying.v0.x + x * varying.vx.x + y * varying.vy.x);
+        store(to_y + i, varying.v0.y + x * varying.vx.y + y * varying.vy.y);
     }
-    std::fill_n(out.oz, geo::RayPacket::size, 0.0f);
-    std::fill_n(out.dz, geo::RayPacket::size, 1.0f);
-    std::fill_n(out.tnear, geo::RayPacket::size, static_cast<float>(near_));
-    std::fill_n(out.tfar, geo::RayPacket::size, static_cast<float>(far_));
+    std::fill_n(perspective_ ? out.ox : out.dx, n, static_cast<float>(constant.x));
+    std::fill_n(perspective_ ? out.oy : out.dy, n, static_cast<float>(constant.y));
+    std::fill_n(out.oz, n, 0.0f);
+    std::fill_n(out.dz, n, 1.0f);
+    std::fill_n(out.tnear, n, static_cast<float>(near_));
+    std::fill_n(out.tfar, n, static_cast<float>(far_));
+    if (lens_radius_ > 0 && !block.lens_x.empty()) {
+        add_lens(block, first, out);
+    }
+}
+
+// Moves rays of z = 0 to the lens, through the same points at the focal distance, ri.md 9.6.
+void Camera::add_lens(const SampleBlock& block, std::size_t first, geo::RayPacket& out) const {
+    const float radius = static_cast<float>(lens_radius_);
+    const float turn = static_cast<float>(lens_radius_ / focal_distance_); // 0: focus at infinity
+    for (std::size_t i = 0; i < geo::RayPacket::size; ++i) {
+        const float x = block.lens_x[first + i], y = block.lens_y[first + i];
+        out.ox[i] += radius * x;
+        out.oy[i] += radius * y;
+        out.dx[i] -= turn * x;
+        out.dy[i] -= turn * y;
+    }
 }
 
 void Camera::make_general_packet(const SampleBlock& block, std::size_t first,

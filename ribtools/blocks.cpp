@@ -45,9 +45,16 @@ bool Blocks::is_legal(const RequestRow& row) const {
     return (allowed & scopes::bit(inner)) != 0 && (allowed & scopes::bit(enclosing())) != 0;
 }
 
-std::string Blocks::where() const {
-    return stack_.empty() ? "outside every block"
-                          : "inside " + std::string(block_name(stack_.back().kind)) + "Begin";
+std::string Blocks::where(const RequestRow& row) const {
+    if (row.kind == RequestKind::Primitive && enclosing() != BlockKind::World &&
+        enclosing() != BlockKind::Object) {
+        return "outside a world";
+    }
+    // Of the two blocks that decide, name the one at fault.
+    const bool inner_allows = (row.scopes & scopes::bit(innermost())) != 0;
+    const BlockKind kind = inner_allows ? enclosing() : innermost();
+    return kind == BlockKind::None ? "outside every block"
+                                   : "inside " + std::string(block_name(kind)) + "Begin";
 }
 
 base::Code illegal_code(RequestKind kind) {

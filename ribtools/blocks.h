@@ -34,8 +34,8 @@ public:
     // Legal here? Attribute, Transform, Solid and Resource blocks pass on what encloses them: a row
     // must allow both the innermost block and the nearest one of another kind.
     [[nodiscard]] bool is_legal(const RequestRow& row) const;
-    // "inside World", "outside every block": for messages.
-    [[nodiscard]] std::string where() const;
+    // Where the row is not legal: "inside WorldBegin", "outside a world": for messages.
+    [[nodiscard]] std::string where(const RequestRow& row) const;
 
 private:
     [[nodiscard]] BlockKind enclosing() const;

@@ -5,6 +5,7 @@
 #include "ribtools/spelling.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <type_traits>
 
@@ -30,6 +31,11 @@ struct Judge {
 
 std::string num(std::size_t n) {
     return std::to_string(n);
+}
+
+std::string num_text(float x) {
+    char buffer[32];
+    return {buffer, std::to_chars(buffer, std::end(buffer), x).ptr};
 }
 
 // Sum of counts; nullopt if one is negative.
@@ -198,8 +204,8 @@ bool judge_knots(const std::vector<float>& knots, std::size_t wanted, const Judg
 }
 
 // One direction of a NURBS surface, ri.md 11.6.
-bool judge_direction(int n, int& order, std::vector<float>& knots, float& low, float& high,
-                     const Judge& to) {
+bool judge_direction(char axis, int n, int& order, std::vector<float>& knots, float& low,
+                     float& high, const Judge& to) {
     if (n < 1 || order < 1) {
         return to.reject(base::Code::Range, "number of points and order must be positive");
     }
@@ -215,7 +221,10 @@ bool judge_direction(int n, int& order, std::vector<float>& knots, float& low, f
     const float first = knots[static_cast<std::size_t>(order) - 1];
     const float last = knots[static_cast<std::size_t>(n)];
     if (low < first || high > last) {
-        to.warn(base::Code::Range, to.pos, "the parameter range exceeds the knots; clamped");
+        to.warn(base::Code::Range, to.pos,
+                std::string("the ") + axis + " range " + num_text(low) + " to " + num_text(high) +
+                    " exceeds that of the knots, " + num_text(first) + " to " + num_text(last) +
+                    "; clamped");
         low = std::max(low, first);
         high = std::min(high, last);
     }
@@ -223,8 +232,8 @@ bool judge_direction(int n, int& order, std::vector<float>& knots, float& low, f
 }
 
 bool judge(NuPatch& p, const Judge& to, const Basis&) {
-    return judge_direction(p.nu, p.uorder, p.uknot, p.umin, p.umax, to) &&
-           judge_direction(p.nv, p.vorder, p.vknot, p.vmin, p.vmax, to);
+    return judge_direction('u', p.nu, p.uorder, p.uknot, p.umin, p.umax, to) &&
+           judge_direction('v', p.nv, p.vorder, p.vknot, p.vmin, p.vmax, to);
 }
 
 bool judge(SubdivisionMesh& m, const Judge& to, const Basis&) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ribtools/rib_lex.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -11,6 +12,7 @@ namespace rib {
 namespace {
 
 constexpr std::size_t block_size = 256 * 1024;
+constexpr std::size_t least_block = 64;
 // The longest name or number; a longer run of regular characters is garbage.
 constexpr std::ptrdiff_t max_run = 64 * 1024;
 
@@ -53,8 +55,10 @@ std::int32_t to_int(double value, bool& inexact, bool& overflow) {
 
 Lexer::Lexer(std::unique_ptr<ByteSource> source, base::SourcePos start,
              const CommentHandler* on_comment)
-    : source_(std::move(source)), on_comment_(on_comment), buffer_(1 + block_size + number_padding),
-      p_(buffer_.data() + 1), end_(p_), file_id_(start.file_id), line_(start.line),
+    : source_(std::move(source)), on_comment_(on_comment),
+      capacity_(std::clamp(source_->size_hint(), least_block, block_size)),
+      buffer_(1 + capacity_ + number_padding), p_(buffer_.data() + 1), end_(p_),
+      file_id_(start.file_id), line_(start.line),
       line_start_(1 - static_cast<std::int64_t>(start.col)) {}
 
 // Moves what is still needed, from keep on, to the front of the buffer and reads more behind it.
@@ -68,7 +72,7 @@ bool Lexer::refill(const char*& keep) {
     }
     char* front = buffer_.data() + 1;
     const std::size_t kept = static_cast<std::size_t>(end_ - keep);
-    if (kept >= block_size) {
+    if (kept >= capacity_) {
         record_from_ = keep;
         return false;
     }
@@ -79,7 +83,7 @@ bool Lexer::refill(const char*& keep) {
     std::memmove(front, keep, kept);
     p_ = front + (p_ - keep);
     keep = record_from_ = front;
-    const std::size_t n = source_->read(front + kept, block_size - kept);
+    const std::size_t n = source_->read(front + kept, capacity_ - kept);
     front[kept + n] = '\0';
     end_ = front + kept + n;
     at_end_ = n == 0;

@@ -90,6 +90,7 @@ private:
 
     std::unique_ptr<ByteSource> source_;
     const CommentHandler* on_comment_;
+    std::size_t capacity_; // bytes of input the buffer holds
     std::vector<char> buffer_;
     // [p_, end_) is unread; *end_ is a sentinel (NUL). buffer_[0] keeps the byte before the block,
     // for CR LF.

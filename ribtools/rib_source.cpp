@@ -54,6 +54,7 @@ public:
         at_ += n;
         return n;
     }
+    std::size_t size_hint() const override { return text_->size(); }
     const std::string& error() const override { return error_; }
 
 private:

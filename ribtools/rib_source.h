@@ -15,6 +15,8 @@ public:
     virtual ~ByteSource() = default;
     // Up to size bytes; 0 at the end or after a read error.
     virtual std::size_t read(char* buffer, std::size_t size) = 0;
+    // How many bytes there are, if that is known and small: the reader's buffer need not be larger.
+    [[nodiscard]] virtual std::size_t size_hint() const { return ~std::size_t{0}; }
     // Empty unless a read failed.
     [[nodiscard]] virtual const std::string& error() const = 0;
 };

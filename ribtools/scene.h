@@ -78,6 +78,7 @@ struct Transform {
     struct Key {
         float time = 0;
         base::Mat4 m;
+        friend bool operator==(const Key&, const Key&) = default;
     };
     std::vector<Key> keys = {Key{}};
 

@@ -44,6 +44,17 @@ std::size_t hash_of(const Attributes& a) {
     return hash;
 }
 
+std::size_t hash_of(const Transform& t) {
+    std::size_t hash = 0;
+    for (const Transform::Key& key : t.keys) {
+        mix(hash, std::hash<float>{}(key.time));
+        for (const auto& matrix_row : key.m.m) {
+            mix_all(hash, matrix_row);
+        }
+    }
+    return hash;
+}
+
 std::size_t hash_of(const std::string& name, const ParamList& params) {
     std::size_t hash = std::hash<std::string>{}(name);
     for (const Param& p : params.params) {
@@ -108,11 +119,28 @@ bool State::admit(const Request& request) {
     const bool harmless = inner == BlockKind::Attribute || inner == BlockKind::Transform;
     if (begins_picture && r.effect == BlockEffect::Open && harmless &&
         !blocks_.inside(BlockKind::World) && !blocks_.inside(BlockKind::Object)) {
-        warn(base::Code::Nesting, request, "not legal " + blocks_.where() + "; accepted");
+        warn(base::Code::Nesting, request, "not legal " + blocks_.where(r) + "; accepted");
         return true;
     }
-    error(illegal_code(r.kind), request, "not legal " + blocks_.where() + "; skipped");
+    error(illegal_code(r.kind), request, "not legal " + blocks_.where(r) + "; skipped");
     return false;
+}
+
+// Blocks beyond the limit are counted instead of opened, and their ends are taken from that count.
+bool State::refuse_depth(const Request& request) {
+    const BlockEffect effect = row(request.id).effect;
+    if (effect == BlockEffect::Close && refused_blocks_ > 0) {
+        --refused_blocks_;
+        return true;
+    }
+    if (effect != BlockEffect::Open || blocks_.depth() < Blocks::max_depth) {
+        return false;
+    }
+    if (refused_blocks_++ == 0) {
+        error(base::Code::Limit, request,
+              "more than " + std::to_string(Blocks::max_depth) + " nested blocks; ignored");
+    }
+    return true;
 }
 
 void State::execute(Request& request) {
@@ -122,7 +150,7 @@ void State::execute(Request& request) {
         request = Request();
         return;
     }
-    if (!admit(request)) {
+    if (refuse_depth(request) || !admit(request)) {
         return;
     }
     if (open_object_ && r.kind == RequestKind::Attribute && request.id != RequestId::Basis &&
@@ -157,10 +185,23 @@ std::uint32_t State::freeze_attributes() {
     return attributes_.id;
 }
 
+TransformId State::add_transform(const Transform& t) {
+    const std::size_t hash = hash_of(t);
+    auto [it, end] = transform_index_.equal_range(hash);
+    for (int i = 0; it != end && i < max_candidates; ++it, ++i) {
+        if (scene_->transforms[it->second].keys == t.keys) {
+            return it->second;
+        }
+    }
+    const auto id = static_cast<TransformId>(scene_->transforms.size());
+    scene_->transforms.push_back(t);
+    transform_index_.emplace(hash, id);
+    return id;
+}
+
 TransformId State::freeze_transform() {
     if (transform_.id == none) {
-        transform_.id = static_cast<TransformId>(scene_->transforms.size());
-        scene_->transforms.push_back(transform_.value);
+        transform_.id = add_transform(transform_.value);
     }
     return transform_.id;
 }
@@ -195,6 +236,7 @@ ShaderId State::add_shader(std::string name, ParamList params, TransformId space
 void State::forget_indices() {
     attribute_index_.clear();
     shader_index_.clear();
+    transform_index_.clear();
 }
 
 // --- bookkeeping requests (ri.md 6.1) ---

@@ -76,6 +76,7 @@ private:
         (this->*bodies[static_cast<std::size_t>(request.id)])(request);
     }
     [[nodiscard]] bool admit(const Request& request);
+    [[nodiscard]] bool refuse_depth(const Request& request);
 
     // --- messages ---
     void report(base::Severity severity, base::Code code, const Request& request,
@@ -102,6 +103,7 @@ private:
     // --- shared records ---
     [[nodiscard]] std::uint32_t freeze_attributes();
     [[nodiscard]] TransformId freeze_transform();
+    [[nodiscard]] TransformId add_transform(const Transform& t);
     [[nodiscard]] ShaderId add_shader(std::string name, ParamList params, TransformId space,
                                       base::SourcePos pos);
     void forget_indices();
@@ -164,7 +166,8 @@ private:
     std::unordered_map<std::string, LightId> light_handles_;
     std::unordered_map<std::string, std::uint32_t> object_handles_;
     std::unordered_map<std::string, Frozen<Attributes>> resources_;
-    std::unordered_multimap<std::size_t, std::uint32_t> attribute_index_, shader_index_;
+    std::unordered_multimap<std::size_t, std::uint32_t> attribute_index_, shader_index_,
+        transform_index_; // by hash, into the scene's records
     std::vector<float> motion_times_;
     std::vector<Request> motion_samples_;
     std::vector<Primitive>* motion_sink_ =
@@ -175,6 +178,7 @@ private:
     base::Mat4 object_base_; // transformation at ObjectBegin, for handedness
     std::uint32_t current_solid_ = none;
     std::unordered_map<std::uint32_t, int> solid_operands_; // of the scene's solids
+    std::size_t refused_blocks_ = 0;
     bool world_wanted_ = true;
     bool replaying_ = false; // messages were given when the object was defined
     bool stop_ = false;

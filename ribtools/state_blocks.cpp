@@ -88,17 +88,26 @@ bool State::close(BlockKind kind, const Request& request) {
 }
 
 void State::close_blocks(base::SourcePos end, std::size_t keep) {
-    while (blocks_.depth() > keep) {
+    constexpr std::size_t max_told = 20;
+    const std::size_t num_open = blocks_.depth() - std::min(keep, blocks_.depth());
+    refused_blocks_ = 0;
+    for (std::size_t i = 0; i < num_open; ++i) {
         const Blocks::Block block = blocks_.top();
-        diag_.report(
-            base::Severity::Error, base::Code::Nesting, end,
-            "end of input inside the " + std::string(block_name(block.kind)) + "Begin of line " +
-                std::to_string(block.pos.line) +
-                (block.kind == BlockKind::World ? "; the world is not rendered" : "; closed"));
+        if (i < max_told || block.kind == BlockKind::World) {
+            diag_.report(
+                base::Severity::Error, base::Code::Nesting, end,
+                "end of input inside the " + std::string(block_name(block.kind)) +
+                    "Begin of line " + std::to_string(block.pos.line) +
+                    (block.kind == BlockKind::World ? "; the world is not rendered" : "; closed"));
+        }
         if (block.kind == BlockKind::Object) {
             finish_object();
         }
         restore(block.kind);
+    }
+    if (num_open > max_told) {
+        diag_.report(base::Severity::Error, base::Code::Nesting, end,
+                     "end of input: " + std::to_string(num_open) + " blocks were open");
     }
 }
 
@@ -189,8 +198,7 @@ void State::bring_into_world() {
     const auto move = [&](TransformId& id) {
         const auto [it, is_new] = moved.try_emplace(id, none);
         if (is_new) {
-            it->second = static_cast<TransformId>(scene_->transforms.size());
-            scene_->transforms.push_back(world_from_camera * scene_->transforms[id]);
+            it->second = add_transform(world_from_camera * scene_->transforms[id]);
         }
         id = it->second;
     };

@@ -102,8 +102,7 @@ void State::instantiate(std::uint32_t object, const InstanceSite& site, const Re
         }
         Instance instance;
         instance.object = object;
-        instance.world_from_object = static_cast<TransformId>(scene_->transforms.size());
-        scene_->transforms.push_back(site.place);
+        instance.world_from_object = add_transform(site.place);
         for (const std::uint32_t group : record->group_of_primitive) {
             instance.attributes.push_back(ids[group]);
         }
@@ -129,9 +128,8 @@ void State::become_primitives(const Instance& instance, const InstanceSite& site
     for (std::size_t i = 0; i < members.size(); ++i) {
         Primitive copy = members[i];
         copy.attributes = instance.attributes[i];
-        copy.world_from_object = static_cast<TransformId>(scene_->transforms.size());
-        scene_->transforms.push_back(site.place *
-                                     Transform(scene_->transforms[members[i].world_from_object]));
+        copy.world_from_object =
+            add_transform(site.place * scene_->transforms[members[i].world_from_object]);
         copy.solid = site.solid == none ? copy.solid : site.solid;
         scene_->lights[site.attributes.area_light].area_primitives.push_back(
             static_cast<std::uint32_t>(scene_->primitives.size()));

@@ -87,18 +87,28 @@ namespace {
 
 constexpr int lanes = RayPacket::size;
 
+// Eight lanes; RayPacket's arrays are aligned for it.
+using Float8 [[gnu::vector_size(32), gnu::may_alias]] = float;
+using Int8 [[gnu::vector_size(32), gnu::may_alias]] = int;
+const Float8& lanes_of(const float* values) {
+    return *reinterpret_cast<const Float8*>(values);
+}
+
 // One int per lane, -1 = trace it: origin and direction finite and within limit, a direction at
 // all, an interval. Comparisons with NaN are false, so NaN fails.
 void valid_rays(const RayPacket& r, float limit, int* valid) {
-    for (int i = 0; i < lanes; ++i) {
-        const bool near = std::fabs(r.ox[i]) <= limit && std::fabs(r.oy[i]) <= limit &&
-                          std::fabs(r.oz[i]) <= limit;
-        const bool bounded = std::fabs(r.dx[i]) <= limit && std::fabs(r.dy[i]) <= limit &&
-                             std::fabs(r.dz[i]) <= limit;
-        const bool moves = r.dx[i] != 0 || r.dy[i] != 0 || r.dz[i] != 0;
-        const bool interval = r.tnear[i] <= r.tfar[i] && r.tfar[i] >= 0;
-        valid[i] = near && bounded && moves && interval && (r.active >> i & 1) ? -1 : 0;
-    }
+    const auto within = [limit](const float* values) {
+        const Float8& v = lanes_of(values);
+        return (v <= limit) & (v >= -limit);
+    };
+    const Int8 bounded = within(r.ox) & within(r.oy) & within(r.oz) & within(r.dx) & within(r.dy) &
+                         within(r.dz);
+    const Int8 moves = (lanes_of(r.dx) != 0) | (lanes_of(r.dy) != 0) | (lanes_of(r.dz) != 0);
+    const Float8& tfar = lanes_of(r.tfar);
+    const Int8 interval = (lanes_of(r.tnear) <= tfar) & (tfar >= 0);
+    const Int8 bits = {1, 2, 4, 8, 16, 32, 64, 128};
+    const Int8 active = (bits & static_cast<int>(r.active)) != 0;
+    *reinterpret_cast<Int8*>(valid) = bounded & moves & interval & active;
 }
 
 void load_rays(const RayPacket& r, RTCRay8& q) {

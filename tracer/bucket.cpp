@@ -83,13 +83,13 @@ bool BucketRenderer::is_matte(const geo::Hit& hit) const {
     return classes_.has_matte() && classes_.facts(frame_.world->binding(hit).attributes).is_matte;
 }
 
-bool BucketRenderer::is_opaque(const Shade& shade) const {
+bool BucketRenderer::is_opaque(const Sample& shade) const {
     return shade.opacity[0] == 1 && shade.opacity[1] == 1 && shade.opacity[2] == 1 &&
            opaque_counts_for_depth_;
 }
 
-bool BucketRenderer::composite(Sample& sample, float& z, std::array<float, 3>& transmitted,
-                               const geo::Hit& hit, const Shade& shade, float z_hit) const {
+bool BucketRenderer::composite(Sample& sample, std::array<float, 3>& transmitted,
+                               const geo::Hit& hit, const Sample& shade, float z_hit) const {
     const float shown = is_matte(hit) ? 0.0f : 1.0f;
     bool shows_behind = false, counts_for_depth = true;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -100,30 +100,30 @@ bool BucketRenderer::composite(Sample& sample, float& z, std::array<float, 3>& t
         counts_for_depth &= shade.opacity[k] >= options_.depth_from[k];
     }
     if (counts_for_depth) {
-        z = std::min(z, z_hit);
+        sample.z = std::min(sample.z, z_hit);
     }
     return shows_behind;
 }
 
+// Shades go straight into the samples: for nearly all of them that is the result.
 void BucketRenderer::composite_first(SampleBuffer& samples) {
-    shades_.resize(block_.count);
     const std::span<const geo::Hit> hits(hits_.data(), block_.count);
-    shader_.shade({camera_packets_, {}, block_.seed, {}, 0}, hits, shades_);
+    shader_.shade({camera_packets_, {}, block_.seed, {}, 0}, hits, samples.samples);
     const bool may_be_matte = classes_.has_matte();
     for (std::uint32_t i = 0; i < hits.size(); ++i) {
         if (!hits[i].valid()) {
             continue;
         }
+        Sample& sample = samples.samples[i];
         const float z = ray_z(camera_packets_[i / lanes], i % lanes, hits[i].t);
-        if (is_opaque(shades_[i]) && !may_be_matte) { // what follows, for nearly all samples
-            std::copy_n(shades_[i].color, 3, samples.samples[i].color);
-            std::copy_n(shades_[i].opacity, 3, samples.samples[i].opacity);
-            samples.samples[i].z = z;
+        if (is_opaque(sample) && !may_be_matte) {
+            sample.z = z;
             continue;
         }
+        const Sample shade = sample;
+        sample = {};
         std::array<float, 3> transmitted = {1, 1, 1};
-        if (composite(samples.samples[i], samples.samples[i].z, transmitted, hits[i], shades_[i],
-                      z)) {
+        if (composite(sample, transmitted, hits[i], shade, z)) {
             behind_.push_back({i, hits[i].t, hits[i], transmitted});
         }
     }
@@ -148,8 +148,7 @@ void BucketRenderer::composite_behind(SampleBuffer& samples) {
         b.t += hits[i].t;
         b.hit = hits[i];
         const float z = ray_z(packets_[i / lanes], i % lanes, hits[i].t);
-        if (composite(samples.samples[b.ray], samples.samples[b.ray].z, b.transmitted, b.hit,
-                      shades_[i], z)) {
+        if (composite(samples.samples[b.ray], b.transmitted, b.hit, shades_[i], z)) {
             next_.push_back(b);
         }
     }

@@ -45,10 +45,10 @@ private:
     void composite_first(SampleBuffer& samples);
     void composite_behind(SampleBuffer& samples);
     // Adds a shade to a sample; true if something behind it still shows.
-    bool composite(Sample& sample, float& z, std::array<float, 3>& transmitted, const geo::Hit& hit,
-                   const Shade& shade, float z_hit) const;
+    bool composite(Sample& sample, std::array<float, 3>& transmitted, const geo::Hit& hit,
+                   const Sample& shade, float z_hit) const;
     [[nodiscard]] bool is_matte(const geo::Hit& hit) const;
-    [[nodiscard]] bool is_opaque(const Shade& shade) const;
+    [[nodiscard]] bool is_opaque(const Sample& shade) const;
 
     const FrameContext& frame_;
     const Camera& camera_;
@@ -63,7 +63,7 @@ private:
     std::vector<geo::RayPacket> camera_packets_; // as shaders see the rays
     std::vector<geo::RayPacket> packets_;        // restarted rays of the layer in work
     std::vector<geo::Hit> hits_;
-    std::vector<Shade> shades_;
+    std::vector<Sample> shades_; // of restarted rays
     std::vector<Behind> behind_, next_;
     std::vector<std::uint32_t> behind_rays_;
     std::vector<float> behind_t_;

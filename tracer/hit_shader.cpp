@@ -122,7 +122,7 @@ void HitShader::group_hits(std::span<const geo::Hit> hits) {
 }
 
 void HitShader::shade(const ShadingRays& rays, std::span<const geo::Hit> hits,
-                      std::span<Shade> out) {
+                      std::span<Sample> out) {
     rays_ = rays;
     hits_ = hits;
     out_ = out;
@@ -242,7 +242,8 @@ void HitShader::run_surface(const ShadingClass& c, Execution& execution,
     run(batch, execution);
     thread_.counters.add(Counter::points_surface, count);
     stride_ = stride;
-    take_results(Ci, Oi);
+    Ci_ = Ci;
+    Oi_ = Oi;
 }
 
 // The volume between the eye and the surface; it takes Ci and Oi of the surface and gives those at
@@ -262,18 +263,19 @@ void HitShader::run_atmosphere(const ShaderEntry& shader, const Execution& surfa
     fill_own_variables(batch, count);
     fill_seeds(batch, members);
     const sl_points& planes = batch.points();
-    const auto copy = [&](float* to, const float* from) {
-        if (to != nullptr && from != nullptr && to != from) {
-            std::copy_n(from, 3 * stride_, to);
-        }
-    };
-    copy(planes.var[SL_VAR_Ci], batch_.Ci.data());
-    copy(planes.var[SL_VAR_Oi], batch_.Oi.data());
+    float* const Ci = planes.var[SL_VAR_Ci];
+    float* const Oi = planes.var[SL_VAR_Oi];
+    if (Ci != nullptr) {
+        std::copy_n(Ci_, 3 * stride_, Ci);
+    }
+    if (Oi != nullptr) {
+        std::copy_n(Oi_, 3 * stride_, Oi);
+    }
     ++thread_.batch_serial; // its lights are asked by another shader
     run(batch, execution);
     thread_.counters.add(Counter::points_volume, count);
-    copy(batch_.Ci.data(), planes.var[SL_VAR_Ci]);
-    copy(batch_.Oi.data(), planes.var[SL_VAR_Oi]);
+    Ci_ = Ci != nullptr ? Ci : Ci_;
+    Oi_ = Oi != nullptr ? Oi : Oi_;
 }
 
 geo::Incident HitShader::incident(std::uint32_t count) const {
@@ -325,42 +327,67 @@ void HitShader::run(rt::ShadeBatch& batch, Execution& execution) {
 // --- results
 // ----------------------------------------------------------------------------------------------------
 
-void HitShader::take_results(const float* Ci, const float* Oi) {
-    if (Ci != batch_.Ci.data()) {
-        std::copy_n(Ci, 3 * stride_, batch_.Ci.data());
+namespace {
+
+// Eight floats of a plane; planes are aligned to 64 bytes and padded to eight.
+using Float8 [[gnu::vector_size(32), gnu::may_alias]] = float;
+
+// Clamps the opacities, where they are about to be composited; colours stay (sl.md 5.2). False if a
+// value is no number.
+bool finish_planes(const float* Ci, float* Oi, std::size_t num_floats) {
+    Float8 bad = {}; // x - x is 0 for numbers, NaN for the rest
+    for (std::size_t at = 0; at < num_floats; at += 8) {
+        const Float8 c = *reinterpret_cast<const Float8*>(Ci + at);
+        auto& opacity = *reinterpret_cast<Float8*>(Oi + at);
+        Float8 o = opacity;
+        bad += (c - c) + (o - o);
+        o = o < 0 ? Float8{} : o; // NaN stays, to be found
+        opacity = o > 1 ? Float8{} + 1 : o;
     }
-    if (Oi != batch_.Oi.data()) {
-        std::copy_n(Oi, 3 * stride_, batch_.Oi.data());
+    float sum = 0;
+    for (int lane = 0; lane < 8; ++lane) {
+        sum += bad[lane];
+    }
+    return sum == 0;
+}
+
+} // namespace
+
+void HitShader::scatter(std::span<const std::uint32_t> members, const ShaderEntry& shader) {
+    const bool all_good = finish_planes(Ci_, Oi_, 3 * std::size_t{stride_});
+    const std::size_t stride = stride_;
+    for (std::size_t i = 0; i < members.size(); ++i) {
+        Sample& out = out_[members[i]];
+        for (std::size_t k = 0; k < 3; ++k) {
+            out.color[k] = Ci_[k * stride + i];
+            out.opacity[k] = Oi_[k * stride + i];
+        }
+    }
+    if (!all_good) {
+        blacken_bad(members, shader);
     }
 }
 
-// Opacity is clamped here, where it is composited, and colour is not (sl.md 5.2). What is no number
-// becomes a transparent black point.
-void HitShader::scatter(std::span<const std::uint32_t> members, const ShaderEntry& shader) {
-    const float* Ci = batch_.Ci.data();
-    const float* Oi = batch_.Oi.data();
+// What is no number becomes a transparent black point.
+void HitShader::blacken_bad(std::span<const std::uint32_t> members, const ShaderEntry& shader) {
     std::uint64_t num_bad = 0;
-    for (std::size_t i = 0; i < members.size(); ++i) {
-        Shade& out = out_[members[i]];
-        bool good = true;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const float c = Ci[k * stride_ + i], o = Oi[k * stride_ + i];
-            good &= is_number(c) && is_number(o);
-            out.color[k] = c;
-            out.opacity[k] = std::clamp(o, 0.0f, 1.0f);
-        }
-        if (!good) {
+    for (const std::uint32_t member : members) {
+        Sample& out = out_[member];
+        const auto is_good = [](const float* rgb) {
+            return is_number(rgb[0]) && is_number(rgb[1]) && is_number(rgb[2]);
+        };
+        if (!is_good(out.color) || !is_good(out.opacity)) {
             out = {};
             ++num_bad;
         }
     }
-    if (num_bad > 0) {
-        thread_.counters.add(Counter::bad_values, num_bad);
-        const Execution execution(frame_, shader);
-        report_shader(
-            execution, base::Severity::Warning, 0,
-            "Ci or Oi is not a number at some points; they are left black and transparent");
+    if (num_bad == 0) {
+        return; // it was in the padding
     }
+    thread_.counters.add(Counter::bad_values, num_bad);
+    const Execution execution(frame_, shader);
+    report_shader(execution, base::Severity::Warning, 0,
+                  "Ci or Oi is not a number at some points; they are left black and transparent");
 }
 
 } // namespace trace

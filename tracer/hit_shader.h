@@ -8,6 +8,7 @@
 #include "geometry/world.h"
 #include "tracer/camera.h"
 #include "tracer/execution.h"
+#include "tracer/film.h"
 #include "tracer/shading_classes.h"
 
 #include <array>
@@ -31,18 +32,13 @@ struct ShadingRays {
     std::uint32_t layer = 0; // surfaces met before on these rays
 };
 
-struct Shade {
-    float color[3];
-    float opacity[3]; // clamped to 0..1
-};
-
 class HitShader {
 public:
     HitShader(const FrameContext& frame, const Camera& camera, const ShadingClasses& classes,
               ThreadState& thread);
 
-    // out[i] is set where hits[i] is valid.
-    void shade(const ShadingRays& rays, std::span<const geo::Hit> hits, std::span<Shade> out);
+    // Sets colour and opacity, clamped to 0..1, of out[i] where hits[i] is valid.
+    void shade(const ShadingRays& rays, std::span<const geo::Hit> hits, std::span<Sample> out);
 
 private:
     // Hits that may share a batch.
@@ -84,8 +80,8 @@ private:
     void fill_own_variables(rt::ShadeBatch& batch, std::uint32_t count) const;
     void fill_seeds(rt::ShadeBatch& batch, std::span<const std::uint32_t> members) const;
     void run(rt::ShadeBatch& batch, Execution& execution);
-    void take_results(const float* Ci, const float* Oi);
     void scatter(std::span<const std::uint32_t> members, const ShaderEntry& shader);
+    void blacken_bad(std::span<const std::uint32_t> members, const ShaderEntry& shader);
 
     // Primitive variables in place of parameters: hit_overrides.cpp.
     // Uniform parameters take one value per batch: brings members from `begin` on with the value of
@@ -108,12 +104,13 @@ private:
     ShadingRays rays_;
     std::span<const geo::Hit> hits_;
     std::span<const geo::Hit> subject_hits_; // of the batch in work
-    std::span<Shade> out_;
+    std::span<Sample> out_;
     std::vector<Group> groups_;
     std::vector<std::uint32_t> group_of_class_; // no_id: none yet
     std::unordered_map<Key, std::uint32_t, KeyHash> group_of_key_;
     std::vector<std::uint32_t> group_of_hit_, members_;
     Batch batch_;
+    float *Ci_ = nullptr, *Oi_ = nullptr; // results of the batch in work, planes of stride_
     std::uint32_t stride_ = 0;
     std::vector<float> values_;
 };

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program slc: compiles SL files into shader objects. Options in docs/reference/slc.md and
-// --help. Files are compiled by several threads; what each has to say is printed in the order of
-// the command line.
+// The program slc: compiles SL files into shader objects; --help lists the options. Files are
+// compiled by several threads; what each has to say is printed in the order of the command line.
 #include "runtime/base/sha256.h"
 #include "slc/driver.h"
 

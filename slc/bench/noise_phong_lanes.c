@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0
  * What a programmer would write with vector extensions for eight points at once: no masks, because
- * nothing diverges, reciprocals and constants hoisted. Noise and pow come from the library, as in
- * emitted code. */
+ * nothing diverges, reciprocals and constants hoisted. Noise is compiled along with it, pow comes
+ * from the library. */
+#include "noise.c" /* the library's, so that the compiler sees all of it */
+
 #include "noise_phong.h"
-#include "sl_shader.h"
 
 static slv load3(const float* p, uint32_t stride, uint32_t i) {
     slv r;

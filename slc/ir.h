@@ -55,10 +55,10 @@ struct Var {
     std::string name; // unique in the program; Temps are t1, t2, ...; a Global that a parameter
                       // hides has another name
     Type type = Type::Float;
-    Detail detail =
-        Detail::Varying;  // Locals and Temps: result of the uniform/varying inference. A uniform
-                          // variable is assigned only uniform values; Locals only under uniform
-                          // control, Temps anywhere (they are read only where they were made).
+    // Locals and Temps: result of the uniform/varying inference. A uniform variable is assigned
+    // only uniform values, by all points that are in its home: Locals, the innermost block that
+    // holds all uses; Temps, where they are made.
+    Detail detail = Detail::Varying;
     int array_length = 0; // 0: not an array
     VarKind kind = VarKind::Temp;
     int index = -1;

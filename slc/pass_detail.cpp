@@ -3,53 +3,112 @@
 // are given a varying value, or are assigned where not all points go the same way.
 //   var x local varying float          var x local uniform float
 //   x = add Kd k1                 ->   x = add Kd k1
-// A variable declared uniform that gets a varying value becomes varying too, with a warning: the
-// value of the "current point" (sl.md 2.2), and results do not depend on which points share a
-// packet (slc-004). Needs: nothing. Provides: Var::detail. Spoils: nothing.
+// "All points" are those that entered the variable's home: the innermost block with all its uses,
+// if its first use there sets it. So the counter of an inlined loop stays uniform even where only
+// some points call the function. A variable declared uniform that gets a varying value becomes
+// varying too, with a warning: each point keeps its own value (sl.md 2.2), and results do not
+// depend on which points share a packet (slc-004). Needs: nothing. Provides: Var::detail. Spoils:
+// nothing.
 #include "slc/ir_util.h"
 #include "slc/passes.h"
 
 #include <algorithm>
+#include <cctype>
 #include <unordered_set>
 
 namespace slc {
 
 namespace {
 
+// The home of each local, as the number of blocks around it: 0 is the body of the shader.
+class Homes {
+public:
+    explicit Homes(const Program& program) : uses_(program.vars.size()) { visit(program.body); }
+    [[nodiscard]] std::size_t depth(VarId id) const {
+        const Uses& u = uses_[static_cast<std::size_t>(id)];
+        const bool starts_there = u.set_first && u.common.size() == u.first_depth;
+        return starts_there && !u.common.empty() ? u.common.size() - 1 : 0;
+    }
+
+private:
+    struct Uses {
+        bool seen = false;
+        bool set_first = false; // the first use assigns all of it
+        std::size_t first_depth = 0;
+        std::vector<const Block*> common; // blocks that hold all uses, outermost first
+    };
+    void visit(const Block& b);
+    void use(VarId id, bool sets);
+
+    std::vector<Uses> uses_;
+    std::vector<const Block*> path_;
+};
+
+void Homes::use(VarId id, bool sets) {
+    Uses& u = uses_[static_cast<std::size_t>(id)];
+    if (!u.seen) {
+        u = {true, sets, path_.size(), path_};
+        return;
+    }
+    std::size_t n = 0;
+    while (n < u.common.size() && n < path_.size() && u.common[n] == path_[n]) {
+        ++n;
+    }
+    u.common.resize(n);
+}
+
+void Homes::visit(const Block& b) {
+    path_.push_back(&b);
+    for (const Stmt& s : b) {
+        const bool is_loop_test = s.op == Op::Loop; // reads its condition after bodies[0]
+        if (!is_loop_test) {
+            for_each_read(s, [&](VarId id) { use(id, false); });
+        }
+        for_each_write(s, [&](VarId id, bool whole) { use(id, whole); });
+        for (const Block& inner : s.bodies) {
+            visit(inner);
+        }
+        if (is_loop_test) {
+            for_each_read(s, [&](VarId id) { use(id, false); });
+        }
+    }
+    path_.pop_back();
+}
+
 class DetailInference {
 public:
     DetailInference(Program& program, Messages* messages)
-        : program_(program), messages_(messages) {}
+        : program_(program), messages_(messages), homes_(program) {}
     void run();
 
 private:
-    // Loop or Scope around the current statement.
-    struct Frame {
+    // One step from a block into a block of one of its statements.
+    struct Step {
         const Stmt* stmt;
-        bool is_loop;
-        bool diverged; // some points have left: what follows inside is under varying control
-        bool skipping; // some points wait for the step after a varying continue
+        bool is_loop, is_scope;
+        bool partial; // not all points that are in the outer block are here, or still here
     };
     void block(const Block& b);
     void statement(const Stmt& s);
-    void bodies(const Stmt& s, bool varying_body);
+    void inside(const Stmt& s, const Block& b, bool partial);
     void loop(const Stmt& s);
     void jump(const Stmt& s);
     void assign(const Stmt& s);
     void raise(VarId id, const Stmt& s, bool by_message);
     [[nodiscard]] bool varying_value(const Stmt& s) const;
-    [[nodiscard]] bool varying_control() const;
+    [[nodiscard]] bool varying_control(std::size_t home) const;
     [[nodiscard]] bool is_varying(VarId id) const { return var(id).detail == Detail::Varying; }
     [[nodiscard]] const Var& var(VarId id) const {
         return program_.vars[static_cast<std::size_t>(id)];
     }
     void warn(VarId id, Loc loc);
+    [[nodiscard]] std::string source_name(const Var& v) const;
 
     Program& program_;
     Messages* messages_;
-    bool varying_ = false;
+    Homes homes_;
     bool changed_ = false;
-    std::vector<Frame> frames_;
+    std::vector<Step> steps_;
     std::unordered_set<const Stmt*> divergent_loops_; // some points leave before others
 };
 
@@ -65,9 +124,9 @@ void DetailInference::run() {
     } while (changed_);
 }
 
-bool DetailInference::varying_control() const {
-    return varying_ || std::any_of(frames_.begin(), frames_.end(),
-                                   [](const Frame& f) { return f.diverged || f.skipping; });
+bool DetailInference::varying_control(std::size_t home) const {
+    return std::any_of(steps_.begin() + static_cast<std::ptrdiff_t>(std::min(home, steps_.size())),
+                       steps_.end(), [](const Step& f) { return f.partial; });
 }
 
 void DetailInference::block(const Block& b) {
@@ -76,31 +135,34 @@ void DetailInference::block(const Block& b) {
     }
 }
 
+void DetailInference::inside(const Stmt& s, const Block& b, bool partial) {
+    steps_.push_back({&s, is_loop(s.op), s.op == Op::Scope, partial});
+    block(b);
+    steps_.pop_back();
+}
+
 void DetailInference::statement(const Stmt& s) {
     switch (s.op) {
     case Op::If:
-        bodies(s, is_varying(s.args[0]));
+        inside(s, s.bodies[0], is_varying(s.args[0]));
+        inside(s, s.bodies[1], is_varying(s.args[0]));
         break;
     case Op::Loop:
         loop(s);
         break;
     case Op::Scope:
-        frames_.push_back({&s, false, false, false});
-        block(s.bodies[0]);
-        frames_.pop_back();
+    case Op::Solar:
+        inside(s, s.bodies[0], false);
+        break;
+    case Op::Illuminate:
+        inside(s, s.bodies[0], s.args.size() > 1);
         break;
     case Op::Illuminance:
     case Op::Gather: // lights and rays reach some points and not others
         assign(s);
-        frames_.push_back({&s, true, false, false});
-        bodies(s, true);
-        frames_.pop_back();
-        break;
-    case Op::Illuminate:
-        bodies(s, s.args.size() > 1);
-        break;
-    case Op::Solar:
-        bodies(s, false);
+        for (const Block& b : s.bodies) {
+            inside(s, b, true);
+        }
         break;
     case Op::Break:
     case Op::Continue:
@@ -113,46 +175,31 @@ void DetailInference::statement(const Stmt& s) {
     }
 }
 
-void DetailInference::bodies(const Stmt& s, bool varying_body) {
-    const bool outer = varying_;
-    varying_ = varying_ || varying_body;
-    for (const Block& b : s.bodies) {
-        block(b);
-    }
-    varying_ = outer;
-}
-
 void DetailInference::loop(const Stmt& s) {
-    frames_.push_back({&s, true, divergent_loops_.contains(&s), false});
-    block(s.bodies[0]);
+    inside(s, s.bodies[0], divergent_loops_.contains(&s));
     if (is_varying(s.args[0]) && divergent_loops_.insert(&s).second) {
         changed_ = true;
     }
-    frames_.back().diverged = divergent_loops_.contains(&s);
-    block(s.bodies[1]);
-    frames_.back().skipping = false; // points that continue join again
-    block(s.bodies[2]);
-    frames_.pop_back();
+    inside(s, s.bodies[1],
+           divergent_loops_.contains(&s)); // a varying continue is undone at the step
+    inside(s, s.bodies[2], divergent_loops_.contains(&s));
 }
 
-// A jump some points take and others do not: every loop it leaves goes on with fewer points.
+// A jump some points take and others do not: what it leaves goes on with fewer points.
 void DetailInference::jump(const Stmt& s) {
-    if (!varying_control()) {
-        return;
-    }
+    const bool to_scope = s.op == Op::Leave;
     int levels = s.levels;
-    for (auto f = frames_.rbegin(); f != frames_.rend() && levels > 0; ++f) {
-        if (f->is_loop == (s.op != Op::Leave)) {
-            --levels;
+    bool partial = false;
+    for (auto step = steps_.rbegin(); step != steps_.rend() && levels > 0; ++step) {
+        partial = partial || step->partial;
+        levels -= (to_scope ? step->is_scope : step->is_loop) ? 1 : 0;
+        if (!partial) {
+            continue;
         }
-        const bool is_target = levels == 0;
-        if (is_target && s.op == Op::Continue) {
-            f->skipping = true;
-        } else if (f->is_loop) {
-            f->diverged = true;
-            changed_ = divergent_loops_.insert(f->stmt).second || changed_;
-        } else if (is_target) {
-            f->diverged = true;
+        step->partial = true;
+        const bool leaves_loop = step->is_loop && !(levels == 0 && s.op == Op::Continue);
+        if (leaves_loop && step->stmt->op == Op::Loop) {
+            changed_ = divergent_loops_.insert(step->stmt).second || changed_;
         }
     }
 }
@@ -180,10 +227,13 @@ bool DetailInference::varying_value(const Stmt& s) const {
 
 void DetailInference::assign(const Stmt& s) {
     const bool varying = varying_value(s) || (is_loop(s.op) && !s.options.empty());
-    const bool control = varying_control();
     const bool by_message = is_loop(s.op) || (s.op == Op::Call && builtin_of(s).has(PropMessage));
     for_each_write(s, [&](VarId id, bool) {
-        if (varying || (control && var(id).kind != VarKind::Temp)) {
+        // Temporaries are read only where they were made.
+        const bool partial = var(id).kind == VarKind::Local  ? varying_control(homes_.depth(id))
+                             : var(id).kind == VarKind::Temp ? false
+                                                             : varying_control(0);
+        if (varying || partial) {
             raise(id, s, by_message);
         }
     });
@@ -203,19 +253,34 @@ void DetailInference::raise(VarId id, const Stmt& s, bool by_message) {
     }
 }
 
+// Inlined copies have names of their own; the source tells what the user called the variable.
+std::string DetailInference::source_name(const Var& v) const {
+    const std::string_view line = messages_->sources().line(v.loc.file, v.loc.line);
+    const std::size_t start = v.loc.col - 1;
+    std::size_t end = start;
+    while (end < line.size() &&
+           (std::isalnum(static_cast<unsigned char>(line[end])) != 0 || line[end] == '_')) {
+        ++end;
+    }
+    const std::string_view name =
+        end > start ? line.substr(start, end - start) : std::string_view();
+    return std::string(!name.empty() && v.name.starts_with(name) ? name : std::string_view(v.name));
+}
+
 void DetailInference::warn(VarId id, Loc loc) {
     if (messages_ == nullptr) {
         return;
     }
     const Var& v = var(id);
     const bool is_param = v.kind == VarKind::Param;
-    messages_->warning_once(
-        loc,
-        std::string(is_param ? "uniform parameter " : "uniform variable ") + quoted(v.name) +
-            " is assigned a varying value, or where points take different ways; it becomes "
-            "varying" +
-            (is_param && !v.declared_uniform ? " (parameters are uniform unless declared varying)"
-                                             : ""));
+    messages_->warning_once(loc,
+                            std::string(is_param ? "uniform parameter " : "uniform variable ") +
+                                quoted(source_name(v)) +
+                                " is assigned a varying value, or where points take different "
+                                "ways; it becomes varying" +
+                                (is_param && !v.declared_uniform
+                                     ? " (parameters are uniform unless declared varying)"
+                                     : ""));
 }
 
 } // namespace

@@ -111,7 +111,8 @@ void Checker::check_initialiser(Variable& variable) {
     if (variable.init == nullptr) {
         return;
     }
-    if (Symbol* source = array_of(*variable.init)) {
+    const Symbol* source = symbol.array_length != 0 ? array_of(*variable.init) : nullptr;
+    if (source != nullptr) {
         if (source->type != symbol.type || source->array_length != symbol.array_length) {
             messages_.error(variable.init->loc, "array " + quoted(source->name) +
                                                     " does not have the type and length of " +

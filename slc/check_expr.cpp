@@ -58,8 +58,12 @@ Type arithmetic_result(Op op, Type l, Type r) {
 
 Type comparison_result(Op op, Type l, Type r) {
     const bool ordered = op != Op::Eq && op != Op::Ne;
-    if (l == Type::String || l == Type::Matrix || r == Type::String || r == Type::Matrix) {
+    if (l == Type::String || r == Type::String) {
         return l == r && !ordered ? Type::Float : Type::Void;
+    }
+    if (l == Type::Matrix || r == Type::Matrix) {
+        return !ordered && arithmetic_result(Op::Mul, l, r) == Type::Matrix ? Type::Float
+                                                                            : Type::Void;
     }
     return arithmetic_result(Op::Add, l, r) == Type::Void ? Type::Void : Type::Float;
 }
@@ -486,7 +490,7 @@ void Checker::deliver(Expr& e, Type wanted, std::string_view what) {
     unsigned best = no_cost;
     for (const Type t : preference) {
         const unsigned cost = add(c[t], conversion_cost(t, wanted));
-        if (cost < best) {
+        if (cost < best || (cost == best && t == wanted && cost != no_cost)) {
             best = cost;
             best_type = t;
         }

@@ -35,7 +35,8 @@ std::optional<std::string> preprocessed(std::string_view raw, const std::string&
                                         const CompileOptions& options, Session& session) {
     std::string text = normalise_text(raw);
     session.sources.set_text(0, text);
-    return preprocess(text, name, options, session.messages);
+    return options.is_preprocessed ? std::move(text)
+                                   : preprocess(text, name, options, session.messages);
 }
 
 std::unique_ptr<ast::File> checked_tree(const std::string& text, Session& session) {

@@ -20,8 +20,9 @@ class Messages;
 struct CompileOptions {
     std::vector<std::string> include_dirs; // -I, in order
     std::vector<std::string> defines;      // -D, "NAME" or "NAME=value"
-    std::string preprocessor; // C compiler to run as preprocessor; "" = cc, gcc or clang
-    bool optimise = true;     // false: only the passes the emitter cannot do without
+    std::string preprocessor;     // C compiler to run as preprocessor; "" = cc, gcc or clang
+    bool is_preprocessed = false; // the text has been through a preprocessor; none is run
+    bool optimise = true;         // false: only the passes the emitter cannot do without
 };
 
 // All shaders of one source file.

@@ -65,6 +65,13 @@ void Lowering::write_back(const std::vector<WriteBack>& back, Loc loc) {
 
 VarId Lowering::builtin_call(const Expr& e, VarId into) {
     const BuiltinRow& row = builtin_rows()[static_cast<std::size_t>(e.builtin)];
+    constexpr std::uint32_t needs_a_point = PropVaries | PropLights | PropArea | PropTraces |
+                                            PropTextures | PropMessage | PropEffect | PropState;
+    if (in_init_ && (row.properties & needs_a_point) != 0) {
+        messages_.error_once(e.loc, "the default of a parameter is evaluated once per instance and "
+                                    "cannot call " +
+                                        quoted(row.name));
+    }
     std::vector<VarId> args;
     std::vector<WriteBack> back;
     bool has_outputs = false;

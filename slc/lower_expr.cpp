@@ -139,7 +139,7 @@ VarId Lowering::unary(const Expr& e, VarId into) {
 
 // A float beside a matrix stands for a diagonal; other mixtures the IR takes as they are.
 VarId Lowering::arithmetic(Op op, VarId left, VarId right, Type result, VarId into, Loc loc) {
-    if (result == Type::Matrix) {
+    if (var(left).type == Type::Matrix || var(right).type == Type::Matrix) {
         left = convert(left, Type::Matrix, loc);
         right = convert(right, Type::Matrix, loc);
     }

@@ -6,8 +6,8 @@
 namespace slc {
 
 namespace {
-constexpr int max_rounds =
-    4; // of the simplifying passes; each round feeds the next, four settle real shaders
+// Of the simplifying passes, each of which feeds the next; most shaders settle in four.
+constexpr int max_rounds = 16;
 } // namespace
 
 void run_passes(Program& program, const CompileOptions& options, Messages* messages) {

@@ -52,8 +52,8 @@ inline Compiled compile(std::string_view text, bool with_passes = true) {
     CompileOptions options;
     options.is_preprocessed = true;
     Compiled c;
-    c.unit = with_passes ? compile_text(text, "test.sl", options, diag.get())
-                         : front_end_text(text, "test.sl", options, diag.get());
+    options.optimise = with_passes;
+    c.unit = compile_text(text, "test.sl", options, diag.get());
     c.messages = diag.text();
     for (const Program& program : c.unit.programs) {
         const auto complaints = verify_ir(program);

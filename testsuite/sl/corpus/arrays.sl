@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Arrays: initialisers, unsized formals, varying index, whole copies, parameters set from RIB.
 #define N_COLORS 5
 color pick(color palette[]; float where)

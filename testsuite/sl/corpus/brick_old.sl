@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
 /* Bricks in the untyped style of the first interface: points for everything, no declarations of detail. */
-#include "patterns.h"
+#include "patterns.slh"
 #define BRICKWIDTH 0.25
 #define BRICKHEIGHT 0.08
 #define MORTAR 0.01

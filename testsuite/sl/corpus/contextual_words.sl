@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* Words that are reserved only where the grammar needs them. */
 surface contextual_words(float distance = 1, diffuse = .5, specular = .25; color light = 1; float step = .1;
                          float min = 0, max = 1; vector incident = 0; string option = "a", attribute = "b";)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Functions calling functions with outputs, array elements as outputs, conversions on the way back.
 void split3(vector v; output float x, y, z) { x = xcomp(v); y = ycomp(v); z = zcomp(v); }
 void order(output float a, b) { if (a > b) { float c = a; a = b; b = c; } }

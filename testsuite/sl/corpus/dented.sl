@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
 /* Displacement from octaves of noise in object space; the result is reported to the surface. */
-#include "patterns.h"
+#include "patterns.slh"
 displacement dented(float Km = 1.0; uniform float octaves = 6; output varying float depth_of_dent = 0;)
 {
     float size = 1.0, magnitude = 0.0, i;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every area operator, some in conditions, some in functions called in a loop.
 float width_of(float x) { extern float du, dv; return abs(Du(x) * du) + abs(Dv(x) * dv); }
 surface derivatives(uniform float n = 3; string envmap = "")

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Precedence: dot above product above cross above sum; casts bind like a sign.
 surface dot_cross(float gain = 2;)
 {

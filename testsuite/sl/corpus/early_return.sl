@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* Several returns, also from inside loops, and functions whose type is left to be found. */
 float first_above(float limit)
 {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 imager exposure_imager(float gain = 1, gamma = 1; color background = 0;)
 {
     Ci += (1 - alpha) * background;

@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
 // Filtered patterns through macros that take derivatives.
-#include "patterns.h"
+#include "patterns.slh"
 surface filtered_stripes(float freq = 10, duty = .5; color a = color "rgb" (1, 1, 1), b = color "hsl" (0.6, 1, .3);)
 {
     float ss = REPEATED(s, freq);

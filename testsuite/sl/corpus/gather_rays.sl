@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* gather with outputs and an else branch. */
 surface gather_rays(float samples = 16, angle = PI / 2)
 {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* Uses ray tracing where the compiler has it. */
 surface glass_bmrt(float Kr = .8, Kt = .9, eta = 1.5, roughness = .05, blur = 0; uniform float samples = 1;
                    string envname = "";)

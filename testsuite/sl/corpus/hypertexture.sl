@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* Marches through a closed primitive; compares colours with numbers. */
 surface hypertexture(float radius = 1, density = 4; uniform float stepsize = .1, max_steps = 64;)
 {

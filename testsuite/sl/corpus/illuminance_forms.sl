@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every form of illuminance, with category, cone and options; L, Cl in a function through extern.
 float wrap_amount(normal n; float wrap)
 {

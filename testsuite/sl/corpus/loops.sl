@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Loops: break and continue with counts, per point exits, nested conditions.
 surface loops(uniform float maximum = 8; float threshold = .5)
 {

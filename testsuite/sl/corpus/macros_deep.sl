@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* Macros with local declarations, pasting, and a guard around parameters. */
 #define PASTE(a, b) a##b
 #define NAME(x) PASTE(x, _amount)

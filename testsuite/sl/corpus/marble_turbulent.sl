@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Turbulence with a loop that stops at the footprint, and a colour spline over repeated knots.
 surface marble_turbulent(float Ka = .5, Kd = .4, Ks = .2, roughness = .1, txtscale = 1, veins = 6;
                          color specularcolor = 1; string shadingspace = "shader";)

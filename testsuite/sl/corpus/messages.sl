@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* Message passing and state queries with all kinds of variables. */
 surface messages(output varying color seen = 0; output uniform string who = "";)
 {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* A light with a soft cone, distance ramp and computed __nonspecular. */
 light metaball_light(float intensity = 1; color lightcolor = 1; point from = point "shader" (0, 0, 0);
                      point to = point "shader" (0, 0, 1); float coneangle = radians(30), conedelta = radians(5);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* Nested functions that see formals and locals of the function around them through extern. */
 float outer_scale(float amount; vector dir)
 {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* Points for colours' sake, commas before types, stray semicolons, chained assignments, odd spacing. */
 float blendit (float a, float b, float k) { return a*(1.-k)+b*k; };
 ;

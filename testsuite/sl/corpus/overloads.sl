@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Overloads of built-in and user functions, and the types that calls take from their context.
 float luminance(color c) { return .2 * comp(c, 0) + .7 * comp(c, 1) + .1 * comp(c, 2); }
 float size(float x) { return abs(x); }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Projection through matrices, texture channels and queries.
 surface projection(string mapname = ""; string maps[2] = {"", ""}; uniform float chan = 1)
 {

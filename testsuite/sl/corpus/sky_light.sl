@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // solar without arguments: light from every direction; Cl is changed after the block.
 light sky_light(float intensity = 1; color zenith = (.3, .5, 1), horizon = 1; string shadowname = "";)
 {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* A switch over strings, uniform, with a default branch and messages. */
 surface string_switch(string mode = "flat"; string mapname = ""; float debug = 0)
 {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Triples take their type from context; sixteen values are a matrix.
 void move(output point p; vector by) { p += by; }
 normal flip(normal n) { return (-xcomp(n), -ycomp(n), -zcomp(n)); }

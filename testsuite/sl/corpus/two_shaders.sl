@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* Two shaders and a function in one file; names differ from the file's. */
 float shared_gain(float x) { return x * 2; }
 surface first_of_two(float k = shared_gain(1)) { Ci = Cs * k; Oi = Os; }

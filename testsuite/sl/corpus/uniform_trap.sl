@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* Assigns uniform variables in places where points take different ways. */
 surface uniform_trap(uniform float seed = 1; output float result = 0;)
 {

@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
 /* A ray-marched fog that accumulates in Ci and Oi. */
-#include "patterns.h"
+#include "patterns.slh"
 volume volume_march(float opacdensity = .1, lightdensity = .1, stepsize = .1; uniform float maxsteps = 50;
                     DECLARE_FRACTAL;)
 {

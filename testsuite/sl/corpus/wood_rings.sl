@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
 /* Solid wood: noise along a distorted axis, user coordinate system by name, depth cue by eye distance. */
-#include "patterns.h"
+#include "patterns.slh"
 surface wood_rings(float ringscale = 10, grain = 5; color lightwood = color (0.3, 0.12, 0.03),
                    darkwood = color (0.05, 0.01, 0.005); string space = "marble"; float Ka = .2, Kd = .4;)
 {

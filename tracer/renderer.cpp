@@ -2,6 +2,7 @@
 #include "tracer/renderer.h"
 
 #include <algorithm>
+#include <filesystem>
 
 namespace trace {
 
@@ -52,7 +53,32 @@ bool Renderer::render(std::unique_ptr<rib::Scene> scene) {
     return result == FrameResult::Done;
 }
 
+namespace {
+
+// As written, or in a directory of the texture path.
+bool source_exists(const std::string& name, const rib::Options& options) {
+    std::error_code error;
+    if (std::filesystem::exists(name, error)) {
+        return true;
+    }
+    const auto path = options.search_paths.find("texture");
+    return path != options.search_paths.end() &&
+           std::any_of(path->second.begin(), path->second.end(), [&](const std::string& directory) {
+               return std::filesystem::exists(std::filesystem::path(directory) / name, error);
+           });
+}
+
+} // namespace
+
 bool Renderer::make_texture(const rib::TextureRequest& request) {
+    for (std::size_t i = 0; i + 1 < request.files.size(); ++i) { // the last one is the result
+        if (!source_exists(request.files[i], request.options)) {
+            diag_.report(base::Severity::Error, base::Code::NoFile, request.pos,
+                         request.kind + ": cannot read " + request.files[i] +
+                             "; no texture is made");
+            return true;
+        }
+    }
     diag_.report_once("texture:" + request.kind, base::Severity::Info, base::Code::Unimplement,
                       request.pos,
                       request.kind + ": textures are not made yet; the request is ignored");

@@ -110,7 +110,8 @@ TEST(Hostile, TruncatedAtEveryByte) {
 
 TEST(Hostile, EveryByteChanged) {
     const std::string text = sample;
-    const std::string replacements("(){}[];,\"=.-+0a\0\x80\xff\n", 21);
+    constexpr char bytes[] = "(){}[];,\"=.-+0a\0\x80\xff\n";
+    const std::string replacements(bytes, sizeof bytes - 1);
     for (std::size_t n = 0; n < text.size(); ++n) {
         std::string changed = text;
         changed[n] = replacements[n % replacements.size()];

@@ -49,6 +49,7 @@ Interpreter::Interpreter(const Program& program, InterpHost& host, int num_point
     }
     bound_.resize(program.vars.size(), 0);
     random_counts_.resize(n, 0);
+    random_uniform_counts_.resize(n, 0);
     lit_.resize(n, 0);
 }
 

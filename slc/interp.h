@@ -98,7 +98,7 @@ private:
     bool spaces(const Stmt& s, int point, Value& result);
     bool area(const Stmt& s, const Mask& mask, int point, Value& result);
     bool text(const Stmt& s, int point, Value& result);
-    void random(int point, Value& result);
+    void random(int point, bool is_uniform, Value& result);
     void fallback(const Stmt& s, int point, Value& result);
     Triple3 illuminate_sum(const Stmt& s, int point);
     Value difference(VarId id, int point, int neighbour) const;
@@ -115,11 +115,11 @@ private:
     const Program& program_;
     InterpHost& host_;
     int num_points_;
-    std::vector<std::vector<Value>> values_;   // by variable, by point
-    std::vector<std::vector<Value>> globals_;  // by sl_variable, by point
-    std::vector<char> bound_;                  // parameters that were set
-    std::vector<std::uint32_t> random_counts_; // by point
-    std::uint32_t random_uniform_ = 0;
+    std::vector<std::vector<Value>> values_;           // by variable, by point
+    std::vector<std::vector<Value>> globals_;          // by sl_variable, by point
+    std::vector<char> bound_;                          // parameters that were set
+    std::vector<std::uint32_t> random_counts_;         // by point
+    std::vector<std::uint32_t> random_uniform_counts_; // calls with a uniform target, by point
     Mask lit_;
     std::vector<Frame> frames_;
     std::size_t steps_ = 0;

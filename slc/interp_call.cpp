@@ -179,10 +179,11 @@ bool Interpreter::text(const Stmt& s, int point, Value& result) {
 }
 
 // The generator of runtime/lib/noise.c: a function of the point's seed, the number of the call and
-// the component.
-void Interpreter::random(int point, Value& result) {
-    const std::uint32_t seed = host_.seed(point);
-    const std::uint32_t count = random_counts_[static_cast<std::size_t>(point)]++;
+// the component. A uniform target has its own count and no seed: one value for all points.
+void Interpreter::random(int point, bool is_uniform, Value& result) {
+    const std::uint32_t seed = is_uniform ? 0 : host_.seed(point);
+    auto& counts = is_uniform ? random_uniform_counts_ : random_counts_;
+    const std::uint32_t count = counts[static_cast<std::size_t>(point)]++;
     for (std::size_t c = 0; c < result.x.size(); ++c) {
         const auto n = count * 3 + static_cast<std::uint32_t>(c);
         std::uint32_t h = (seed * 0x9e3779b1u ^ n * 0x85ebca77u) + 0x2545f491u;
@@ -198,7 +199,7 @@ void Interpreter::random(int point, Value& result) {
 bool Interpreter::state(const Stmt& s, int point, std::vector<Value>& args, Value& result) {
     const BuiltinRow& row = builtin_of(s);
     if (row.has(PropRandom)) {
-        random(point, result);
+        random(point, s.dst != no_var && var(s.dst).detail == Detail::Uniform, result);
     } else if (row.body == "faceforward") {
         const bool has_Ng =
             (variable_rows()[SL_VAR_Ng].readable & shader_type_bit(program_.shader_type)) != 0;

@@ -156,6 +156,19 @@ TEST(Interp, NoiseStatistics) {
     EXPECT_NEAR(sum / 20000, .5, .005);
 }
 
+TEST(Interp, RandomIsPerPointUnlessTheTargetIsUniform) {
+    const auto c =
+        compile("surface t(output varying float a = 0, b = 0, d = 0) { uniform float u = random(); "
+                "a = u; b = random(); d = random(); }");
+    ASSERT_EQ(c.unit.programs.size(), 1U) << c.messages;
+    InterpHost host;
+    Interpreter interpreter(c.unit.programs[0], host, 2);
+    EXPECT_TRUE(interpreter.run());
+    EXPECT_EQ(interpreter.param("a", 0).f(), interpreter.param("a", 1).f());
+    EXPECT_NE(interpreter.param("b", 0).f(), interpreter.param("b", 1).f());
+    EXPECT_NE(interpreter.param("b", 0).f(), interpreter.param("d", 0).f());
+}
+
 TEST(Interp, Strings) {
     EXPECT_EQ(evaluate("string", "concat(\"a\", \"b\", \"c\")").text(), "abc");
     EXPECT_EQ(evaluate("string",

@@ -70,7 +70,6 @@ private:
 };
 
 // --- transforms
-// -------------------------------------------------------------------------------------------------
 
 // A possibly moving transform: one key when still. Times increase; linear between keys, constant
 // outside.
@@ -89,7 +88,6 @@ struct Transform {
 using TransformId = std::uint32_t; // index into Scene::transforms
 
 // --- shaders and lights
-// -----------------------------------------------------------------------------------------
 
 struct ShaderCall {
     std::string name; // "" = none; as written, path and suffix included
@@ -112,7 +110,6 @@ struct Light {
 using LightId = std::uint32_t;
 
 // --- attributes
-// -------------------------------------------------------------------------------------------------
 
 enum class Interpolation : std::uint8_t { Constant, Smooth };
 
@@ -167,7 +164,6 @@ struct Attributes {
 };
 
 // --- primitives
-// -------------------------------------------------------------------------------------------------
 
 enum class QuadricKind : std::uint8_t {
     Sphere,
@@ -288,7 +284,6 @@ struct Instance {
 };
 
 // --- options
-// ----------------------------------------------------------------------------------------------------
 
 struct Quantize {
     float one = 255, min = 0, max = 255, dither = 0.5f;
@@ -346,7 +341,6 @@ struct Options {
 };
 
 // --- scene
-// ------------------------------------------------------------------------------------------------------
 
 struct Scene {
     Options options;

@@ -8,6 +8,7 @@
 #include "runtime/shader.h"
 #include "sl_fingerprint.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
@@ -147,6 +148,16 @@ struct ShaderLibrary::Impl {
 
     // Objects may carry another renderer's suffix (slc -o x.slc); that renderer's own objects are
     // no concern of ours.
+    static std::string canonical(const std::string& directory) {
+        std::error_code error;
+        const auto path =
+            std::filesystem::weakly_canonical(directory.empty() ? "." : directory, error);
+        return error ? directory : path.lexically_normal().string();
+    }
+    static std::string canonical_directory(const std::string& stem) {
+        return canonical(std::filesystem::path(stem).parent_path().string());
+    }
+
     static std::string object_at(const std::string& stem) {
         if (is_file(stem + ".slo")) {
             return stem + ".slo";
@@ -160,9 +171,24 @@ struct ShaderLibrary::Impl {
         return "";
     }
 
+    [[nodiscard]] bool is_trusted(const std::string& stem) const {
+        const std::string directory = canonical_directory(stem);
+        return config.trust_all ||
+               std::any_of(config.trusted.begin(), config.trusted.end(),
+                           [&](const std::string& t) { return canonical(t) == directory; });
+    }
+
     // In one directory (or at a path without suffix): the object, else its source.
     const ShaderObject* open_at(const std::string& stem, base::SourcePos pos, bool& exists) {
-        const std::string object_path = object_at(stem);
+        std::string object_path = object_at(stem);
+        if (!object_path.empty() && !is_trusted(stem)) {
+            diag.report_once("untrusted " + object_path, base::Severity::Warning,
+                             base::Code::NoShader, pos,
+                             object_path + " is not loaded: compiled shaders come only from "
+                                           "directories given by -shaders or SHADERS "
+                                           "(--allow-programs trusts the RIB)");
+            object_path.clear();
+        }
         const std::string source_path = stem + ".sl";
         const bool has_source = is_file(source_path);
         if (!object_path.empty()) {

@@ -77,6 +77,11 @@ class ShaderLibrary {
 public:
     struct Config {
         std::vector<std::string> search_path; // directories, in order
+        // Directories whose compiled objects may be loaded: objects are machine code, so they come
+        // only from places the user named, never from a path a RIB sets. Sources are compiled
+        // from anywhere.
+        std::vector<std::string> trusted;
+        bool trust_all = false;
         std::string cache_dir; // see default_cache_dir(); "" = compile to a temporary file
         // Compiles an .sl file into an .slo at the given path; false after reporting why not.
         std::function<bool(const std::string& sl_path, const std::string& slo_path, base::Diag&)>

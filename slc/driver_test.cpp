@@ -8,6 +8,7 @@
 #include "slc/emit_runner.h"
 #include "slc/process.h"
 
+#include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <thread>
@@ -44,6 +45,7 @@ protected:
     rt::ShaderLibrary::Config config(int* num_compiled = nullptr) {
         rt::ShaderLibrary::Config c;
         c.search_path = {dir.path()};
+        c.trusted = {dir.path()};
         c.cache_dir = in("cache");
         c.compile = [this, num_compiled](const std::string& sl, const std::string& slo,
                                          base::Diag& d) {
@@ -59,6 +61,23 @@ protected:
 private:
     int ignored_ = 0;
 };
+
+TEST_F(Driver, ObjectsLoadOnlyFromTrustedDirectories) {
+    write(in("matte.sl"), matte_text);
+    ASSERT_TRUE(compile_to_object(in("matte.sl"), in("matte.slo"), native, diag));
+    std::filesystem::remove(in("matte.sl"));
+    rt::ShaderLibrary::Config untrusted = config();
+    untrusted.trusted.clear();
+    {
+        rt::ShaderLibrary library(untrusted, strings, diag);
+        EXPECT_EQ(library.find("matte", SL_SHADER_surface, {}), nullptr);
+        EXPECT_EQ(library.find(in("matte"), SL_SHADER_surface, {}), nullptr);
+        EXPECT_EQ(library.find(in("cache/../matte"), SL_SHADER_surface, {}), nullptr);
+    }
+    untrusted.trust_all = true;
+    rt::ShaderLibrary library(untrusted, strings, diag);
+    EXPECT_NE(library.find("matte", SL_SHADER_surface, {}), nullptr);
+}
 
 TEST_F(Driver, SourceIsCompiledOnceIntoTheCache) {
     write(in("matte.sl"), matte_text);
@@ -149,7 +168,7 @@ TEST_F(Driver, ForeignAndDamagedObjectsAreRefused) {
     write(in("matte.sl"), matte_text);
     ASSERT_TRUE(compile_to_object(in("matte.sl"), in("good.slo"), native, diag));
     const std::string good = *base::read_file(in("good.slo"));
-    rt::ShaderLibrary library({{dir.path()}, "", {}, {}}, strings, diag);
+    rt::ShaderLibrary library(config(), strings, diag);
     ASSERT_NE(library.load(in("good.slo"), {}), nullptr);
 
     std::string why;

@@ -296,7 +296,10 @@ int main(int argc, char** argv) {
     }
     base::Diag diag;
     rt::StringTable strings;
-    rt::ShaderLibrary library({search_path(), "", {}, {}}, strings, diag);
+    rt::ShaderLibrary::Config config;
+    config.search_path = search_path();
+    config.trust_all = true; // the user named the shader
+    rt::ShaderLibrary library(std::move(config), strings, diag);
     std::printf(json ? "[\n" : "");
     bool first = true;
     for (const std::string& name : names) {

@@ -77,7 +77,7 @@ std::optional<Driver> format_of_extension(std::string_view path) {
     return std::nullopt;
 }
 
-// --- mode: which channels --------------------------------------------------------------------
+// --- mode: which channels
 
 struct ChannelRow {
     std::string_view name;
@@ -147,7 +147,7 @@ std::optional<std::vector<ChannelRow>> channels_of_mode(std::string_view mode) {
     return out;
 }
 
-// --- quantisation ----------------------------------------------------------------------------
+// --- quantisation
 
 Quantizer quantizer_for(const ChannelRow& channel, bool only_depth, const rib::Display& display,
                         const rib::Options& options) {
@@ -183,7 +183,7 @@ Storage common_storage(const std::vector<FileChannel>& channels) {
     return storage_for(min, max);
 }
 
-// --- one request -----------------------------------------------------------------------------
+// --- one request
 
 class DisplayWriter {
 public:

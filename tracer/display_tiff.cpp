@@ -27,7 +27,7 @@ constexpr TiffCompression compressions[] = {
     {"packbits", COMPRESSION_PACKBITS}, {"none", COMPRESSION_NONE},
 };
 
-// --- libtiff's callbacks ---------------------------------------------------------------------
+// --- libtiff's callbacks
 
 OutputFile& output(thandle_t handle) {
     return *static_cast<OutputFile*>(handle);
@@ -89,7 +89,7 @@ TiffHandle open_tiff(OutputFile& file, std::string& error) {
                                         options.get()));
 }
 
-// --- tags ------------------------------------------------------------------------------------
+// --- tags
 
 std::uint16_t sample_format(Storage storage) {
     return storage == Storage::Float ? SAMPLEFORMAT_IEEEFP

@@ -27,7 +27,7 @@ std::size_t physical_bytes() {
 
 } // namespace
 
-// --- settings ------------------------------------------------------------------------
+// --- settings
 
 DepthFilter depth_filter(const rib::Options& options, base::Diag& diag) {
     const std::string name = options.hider_params.get_string("depthfilter", "min");
@@ -57,7 +57,7 @@ FilmSettings film_settings(const rib::Options& options, base::Diag& diag) {
     return s;
 }
 
-// --- buckets -------------------------------------------------------------------------
+// --- buckets
 
 struct Film::Bucket {
     PixelRange output; // pixels it computes
@@ -185,7 +185,7 @@ bool Film::complete() const {
     return num_done_ == buckets_.size();
 }
 
-// --- samples -------------------------------------------------------------------------
+// --- samples
 
 SampleBuffer Film::buffer(std::size_t bucket) {
     SampleBuffer out;

@@ -46,7 +46,6 @@ HitShader::HitShader(const FrameContext& frame, const Camera& camera, const Shad
       group_of_class_(classes.size(), geo::no_id) {}
 
 // --- grouping
-// ---------------------------------------------------------------------------------------------------
 
 std::uint32_t HitShader::new_group(std::uint32_t shading_class, std::uint32_t attributes) {
     groups_.push_back({shading_class, attributes});
@@ -147,7 +146,6 @@ void HitShader::shade_group(const Group& group) {
 }
 
 // --- one batch
-// --------------------------------------------------------------------------------------------------
 
 void HitShader::shade_batch(const Group& group, std::span<const std::uint32_t> members) {
     const ShadingClass& c = classes_[group.shading_class];
@@ -325,7 +323,6 @@ void HitShader::run(rt::ShadeBatch& batch, Execution& execution) {
 }
 
 // --- results
-// ----------------------------------------------------------------------------------------------------
 
 namespace {
 

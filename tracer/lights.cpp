@@ -228,7 +228,6 @@ float LightRun::param(int index, std::uint32_t lane) {
 }
 
 // --- shadows
-// ----------------------------------------------------------------------------------------------------
 
 // Points that lie on the hit start outside its rounding error. Points a shader made up (a march
 // through a volume) lie on nothing and start as they are.
@@ -281,7 +280,6 @@ std::uint32_t LightRun::unshadowed(std::uint32_t mask) {
 }
 
 // --- services
-// ---------------------------------------------------------------------------------------------------
 
 namespace {
 

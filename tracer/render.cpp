@@ -26,7 +26,6 @@ namespace fs = std::filesystem;
 enum ExitCode { exit_done = 0, exit_input = 1, exit_usage = 2, exit_environment = 3 };
 
 // --- where things are
-// -------------------------------------------------------------------------------------------
 
 // The directory this program lies in: installed files are found from there.
 fs::path program_directory() {
@@ -64,7 +63,6 @@ std::vector<std::string> default_shader_path() {
 }
 
 // --- configuration
-// ----------------------------------------------------------------------------------------------
 
 rib::Options rib_defaults(const trace::RenderOptions& options) {
     rib::Options defaults;
@@ -110,6 +108,15 @@ slc::ObjectOptions compile_options() {
     return options;
 }
 
+// What the user named: switches, environment, the current directory, the installation.
+std::vector<std::string> trusted_directories(const trace::RenderOptions& options) {
+    std::vector<std::string> directories = options.shader_path;
+    for (const auto& more : {default_shader_path(), installed_shaders()}) {
+        directories.insert(directories.end(), more.begin(), more.end());
+    }
+    return directories;
+}
+
 trace::RendererConfig renderer_config(const trace::RenderOptions& options) {
     trace::RendererConfig config;
     config.settings.num_threads = options.num_threads;
@@ -117,6 +124,8 @@ trace::RendererConfig renderer_config(const trace::RenderOptions& options) {
     config.settings.interrupted = trace::is_interrupted;
     config.settings.keep_existing = options.safe;
     config.shaders.search_path = installed_shaders();
+    config.shaders.trusted = trusted_directories(options);
+    config.shaders.trust_all = options.allow_programs;
     config.shaders.cache_dir = rt::default_cache_dir();
     config.shaders.compile = [](const std::string& sl_path, const std::string& slo_path,
                                 base::Diag& diag) {
@@ -135,7 +144,6 @@ std::string default_output(const std::string& file) {
 }
 
 // --- the run
-// ----------------------------------------------------------------------------------------------------
 
 // RIB that comes before the files: ~/.rendribrc, then -option.
 rib::ReadStatus read_preludes(rib::Reader& reader, const trace::RenderOptions& options) {

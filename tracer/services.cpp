@@ -22,7 +22,6 @@ Execution& of(void* engine) {
 }
 
 // --- spaces
-// -----------------------------------------------------------------------------------------------------
 
 const rib::Attributes* attributes_of(const Execution& execution) {
     const BatchSubject* subject = execution.subject;
@@ -104,7 +103,6 @@ int32_t space(void* engine, sl_string from, sl_string to, uint32_t /*first*/, fl
 }
 
 // --- lights
-// -----------------------------------------------------------------------------------------------------
 
 int32_t light_count(void* engine) {
     const Execution& execution = of(engine);
@@ -122,7 +120,6 @@ void ambient(void* engine, uint32_t first, uint32_t mask, const float* P, float*
 }
 
 // --- state
-// ------------------------------------------------------------------------------------------------------
 
 uint32_t message(void* engine, int32_t kind, sl_string name, int32_t type, int32_t array_length,
                  uint32_t first, uint32_t mask, float* value) {

@@ -147,7 +147,6 @@ protected:
 };
 
 // --- lights
-// -----------------------------------------------------------------------------------------------------
 
 TEST_F(Shading, AmbientCountsWhereNothingIsDirectional) {
     const auto a = light(shader("ambient", {floats("intensity", rib::ParamType::Float, {0.25f})}));
@@ -251,7 +250,6 @@ TEST_F(Shading, ShadowsOnlyWhereTheAttributeSaysSo) {
 }
 
 // --- visibility
-// -------------------------------------------------------------------------------------------------
 
 TEST_F(Shading, TransparentSheetsStackInDepthOrder) {
     const auto flat = shader("flat");
@@ -322,7 +320,6 @@ TEST_F(Shading, AtmosphereFollowsTheSurface) {
 }
 
 // --- batches
-// ----------------------------------------------------------------------------------------------------
 
 TEST_F(Shading, PrimitiveVariablesReplaceParameters) {
     const auto tint = shader("tint", {floats("tint", rib::ParamType::Color, {0.5f, 0.5f, 0.5f})});
@@ -396,7 +393,6 @@ TEST_F(Shading, SameBytesWhateverThreadsAndBuckets) {
 }
 
 // --- imager
-// -----------------------------------------------------------------------------------------------------
 
 TEST_F(Shading, ImagersRunOnEveryPixel) {
     sheet(1, shader("flat"));

@@ -47,7 +47,6 @@ base::V3f times(const base::V3f& a, const base::V3f& b) {
 void no_init(const sl_init*) {}
 
 // --- surfaces
-// ---------------------------------------------------------------------------------------------------
 
 sl_status flat(const sl_batch* batch, std::uint32_t first, std::uint32_t count, sl_frame*) {
     return each(batch, first, count, [](Point p) {
@@ -168,7 +167,6 @@ sl_status spaces(const sl_batch* batch, std::uint32_t first, std::uint32_t count
 }
 
 // --- lights
-// -----------------------------------------------------------------------------------------------------
 
 struct LightBlock {
     alignas(16) float intensity;
@@ -228,7 +226,6 @@ sl_status light(const sl_batch* batch, std::uint32_t first, std::uint32_t count,
 }
 
 // --- volume, imager
-// ---------------------------------------------------------------------------------------------
 
 // Ci = mix(Ci, 1, clamp(|I| / 10)): linear, so that the closed form is plain.
 sl_status haze(const sl_batch* batch, std::uint32_t first, std::uint32_t count, sl_frame*) {
@@ -248,7 +245,6 @@ sl_status invert(const sl_batch* batch, std::uint32_t first, std::uint32_t count
 }
 
 // --- the objects
-// ------------------------------------------------------------------------------------------------
 
 constexpr std::uint64_t bits(std::initializer_list<sl_variable> ids) {
     std::uint64_t mask = 0;

@@ -173,7 +173,6 @@ const std::vector<Expectation>& mathematics() {
 }
 
 // --- splines: the basis matrices of sl.md 4.1.2 in double
-// -----------------------------------------
 
 struct Basis {
     int step;
@@ -279,7 +278,6 @@ const std::vector<Expectation>& filters() {
 }
 
 // --- running a table
-// --------------------------------------------------------------------------------
 
 Planes points_of(const Expectation& e, std::size_t num_planes, std::size_t n) {
     Planes in(num_planes);
@@ -430,7 +428,6 @@ TEST(Builtins, AnglesAtTheSeams) {
 }
 
 // --- coverage
-// ------------------------------------------------------------------------------------------
 
 TEST(Builtins, EveryRowHasATest) {
     std::set<std::string> bodies = covered();

@@ -211,7 +211,6 @@ TEST(Geometry, FaceForward) {
 }
 
 // --- matrices
-// -----------------------------------------------------------------------------------------
 
 base::Mat4 matrix(const Planes& p, std::size_t first, std::size_t i) {
     base::Mat4 m;
@@ -293,7 +292,6 @@ TEST(Matrices, Components) {
 }
 
 // --- transforms
-// ---------------------------------------------------------------------------------------
 
 const rt::TestEngine::Matrix to_shader = {2, 0.5f, 0,    0, -0.25f, 1,  0.75f, 0,
                                           0, 0.3f, 1.5f, 0, 1,      -2, 3,     1};
@@ -423,7 +421,6 @@ TEST_F(Transforms, UnknownSpaceIsIdentity) {
 }
 
 // --- colour
-// -----------------------------------------------------------------------------------------------
 
 std::array<double, 3> hsv_to_rgb(double h, double s, double v) { // the case table of sl.md 4.4
     const double h6 = 6 * (h - std::floor(h));

@@ -44,7 +44,6 @@ void print(const std::string& name, double value, const char* unit, double limit
 }
 
 // --- speed
-// ------------------------------------------------------------------------------------------
 
 constexpr std::size_t num_points = 4096;
 
@@ -116,7 +115,6 @@ void measure_octaves() {
 }
 
 // --- accuracy
-// -----------------------------------------------------------------------------------------
 
 struct Sweep {
     const char* name;

@@ -188,7 +188,6 @@ TEST_F(Lighting, ALightAtThePointGivesNothing) {
 }
 
 // --- the loop itself and the light's side
-// --------------------------------------------------------------
 
 const std::vector<const light_driver*>& drivers() {
     static const std::vector<const light_driver*> all = [] {

@@ -22,7 +22,6 @@ const Covers covers{"noise_f_1",     "noise_f_2",     "noise_f_3",     "noise_f_
                     "random_f",      "random_3"};
 
 // --- the definition once more, in double
-// -------------------------------------------------------------
 
 using u32 = std::uint32_t;
 constexpr u32 primes[4] = {0x8da6b343, 0xb5297a4d, 0xcb1ab31f, 0xa7d69b35};

@@ -226,7 +226,6 @@ TEST_F(State, Match) {
 }
 
 // --- messages
-// ------------------------------------------------------------------------------------------
 
 TEST_F(State, MessagesByKind) {
     for (int kind = SL_MESSAGE_lightsource; kind <= SL_MESSAGE_rendererinfo; kind++) {
@@ -349,7 +348,6 @@ TEST_F(State, ShaderNames) {
 }
 
 // --- rows of later versions
-// -------------------------------------------------------------------------------
 
 struct Fallback {
     const char* case_name;

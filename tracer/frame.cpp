@@ -9,6 +9,7 @@
 #include "tracer/filter.h"
 #include "tracer/imager.h"
 #include "tracer/lights.h"
+#include "tracer/not_done.h"
 #include "tracer/quantize.h"
 #include "tracer/sampler.h"
 #include "tracer/shader_set.h"
@@ -58,6 +59,7 @@ public:
         : scene_(scene), settings_(settings), tools_(tools), camera_(scene, tools.diag),
           spaces_(scene, {camera_.screen_from_camera(), camera_.ndc_from_screen(),
                           camera_.raster_from_screen()}) {
+        report_not_done(scene, tools.diag);
         {
             const PhaseTimer timer(tools.stats, Phase::shaders);
             shaders_ = std::make_unique<ShaderSet>(

@@ -87,28 +87,30 @@ namespace {
 
 constexpr int lanes = RayPacket::size;
 
-// Eight lanes; RayPacket's arrays are aligned for it.
-using Float8 [[gnu::vector_size(32), gnu::may_alias]] = float;
-using Int8 [[gnu::vector_size(32), gnu::may_alias]] = int;
-const Float8& lanes_of(const float* values) {
-    return *reinterpret_cast<const Float8*>(values);
-}
+// Four lanes at a time: GCC compares 32-byte vectors one by one where the processor has 16-byte
+// registers only, which is what this file is compiled for. RayPacket's arrays are aligned for it.
+using Float4 [[gnu::vector_size(16), gnu::may_alias]] = float;
+using Int4 [[gnu::vector_size(16), gnu::may_alias]] = int;
+constexpr int group = 4;
 
 // One int per lane, -1 = trace it: origin and direction finite and within limit, a direction at
 // all, an interval. Comparisons with NaN are false, so NaN fails.
 void valid_rays(const RayPacket& r, float limit, int* valid) {
-    const auto within = [limit](const float* values) {
-        const Float8& v = lanes_of(values);
-        return (v <= limit) & (v >= -limit);
-    };
-    const Int8 bounded = within(r.ox) & within(r.oy) & within(r.oz) & within(r.dx) & within(r.dy) &
-                         within(r.dz);
-    const Int8 moves = (lanes_of(r.dx) != 0) | (lanes_of(r.dy) != 0) | (lanes_of(r.dz) != 0);
-    const Float8& tfar = lanes_of(r.tfar);
-    const Int8 interval = (lanes_of(r.tnear) <= tfar) & (tfar >= 0);
-    const Int8 bits = {1, 2, 4, 8, 16, 32, 64, 128};
-    const Int8 active = (bits & static_cast<int>(r.active)) != 0;
-    *reinterpret_cast<Int8*>(valid) = bounded & moves & interval & active;
+    const Int4 bits = {1, 2, 4, 8};
+    for (int first = 0; first < lanes; first += group) {
+        const auto at = [first](const float* values) -> const Float4& {
+            return *reinterpret_cast<const Float4*>(values + first);
+        };
+        const auto within = [&](const float* values) {
+            return (at(values) <= limit) & (at(values) >= -limit);
+        };
+        const Int4 bounded =
+            within(r.ox) & within(r.oy) & within(r.oz) & within(r.dx) & within(r.dy) & within(r.dz);
+        const Int4 moves = (at(r.dx) != 0) | (at(r.dy) != 0) | (at(r.dz) != 0);
+        const Int4 interval = (at(r.tnear) <= at(r.tfar)) & (at(r.tfar) >= 0);
+        const Int4 active = (bits & static_cast<int>(r.active >> first)) != 0;
+        *reinterpret_cast<Int4*>(valid + first) = bounded & moves & interval & active;
+    }
 }
 
 void load_rays(const RayPacket& r, RTCRay8& q) {

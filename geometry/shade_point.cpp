@@ -75,10 +75,6 @@ struct Place {
     }
 };
 
-V3d color_of(const std::array<float, 3>& c) {
-    return {c[0], c[1], c[2]};
-}
-
 V3d vec(const double* x) {
     return {x[0], x[1], x[2]};
 }
@@ -92,10 +88,14 @@ public:
           aux_v_(planes_of(request.aux_v, ~std::uint64_t(0), request.stride)) {}
 
     void run() const {
-        for (std::size_t i = 0; i < r_.hits.size(); ++i) {
+        const std::uint64_t all = main_.wanted | aux_u_.wanted | aux_v_.wanted;
+        const bool by_surface = (all & ~(attribute_vars | free_vars)) != 0;
+        for (std::size_t i = 0; i < r_.hits.size();) {
+            const std::size_t end = by_surface ? i + 1 : end_of_run(i);
             if (r_.hits[i].valid()) {
-                fill_one(i);
+                by_surface ? fill_one(i) : fill_attributes(i, end);
             }
+            i = end;
         }
         for (const Planes* planes : {&main_, &aux_u_, &aux_v_}) {
             if (planes->has(SL_VAR_E)) { // camera space has its origin at the eye
@@ -109,17 +109,55 @@ private:
     const FillRequest& r_;
     Planes main_, aux_u_, aux_v_;
 
-    void fill_one(std::size_t i) const {
-        Place place(table_, r_.hits[i]);
-        const std::uint64_t all = main_.wanted | aux_u_.wanted | aux_v_.wanted;
-        const bool by_surface = (all & ~(attribute_vars | free_vars)) != 0;
-        main_.set(SL_VAR_time, i, place.hit.time);
-        main_.set(SL_VAR_dPdtime, i, V3d());
-        fill_color(place, place.shape.vars.Cs, place.attributes.color, SL_VAR_Cs, i);
-        fill_color(place, place.shape.vars.Os, place.attributes.opacity, SL_VAR_Os, i);
-        if (!by_surface) {
+    // Neighbouring hits mostly lie on one shape.
+    [[nodiscard]] std::size_t end_of_run(std::size_t i) const {
+        const Hit& first = r_.hits[i];
+        do {
+            ++i;
+        } while (i < r_.hits.size() && r_.hits[i].shape == first.shape &&
+                 r_.hits[i].instance == first.instance);
+        return i;
+    }
+
+    // Hits of one shape where nobody asks for the place: no surface is evaluated.
+    void fill_attributes(std::size_t begin, std::size_t end) const {
+        const Place place(table_, r_.hits[begin]);
+        fill_time(begin, end);
+        fill_colors(place, place.shape.vars.Cs, place.attributes.color, SL_VAR_Cs, begin, end);
+        fill_colors(place, place.shape.vars.Os, place.attributes.opacity, SL_VAR_Os, begin, end);
+    }
+
+    void fill_time(std::size_t begin, std::size_t end) const {
+        for (std::size_t i = begin; i < end && main_.has(SL_VAR_time); ++i) {
+            main_.set(SL_VAR_time, i, r_.hits[i].time);
+        }
+        for (std::size_t i = begin; i < end && main_.has(SL_VAR_dPdtime); ++i) {
+            main_.set(SL_VAR_dPdtime, i, V3d());
+        }
+    }
+
+    void fill_colors(const Place& place, const rib::Param* param,
+                     const std::array<float, 3>& attribute, sl_variable id, std::size_t begin,
+                     std::size_t end) const {
+        if (!main_.has(id)) {
             return;
         }
+        for (std::size_t i = begin; i < end && param; ++i) {
+            const Hit& hit = r_.hits[i];
+            double value[3];
+            interpolate(*param, place.surface(), {hit.part, hit.u, hit.v}, value);
+            main_.set(id, i, vec(value));
+        }
+        for (std::size_t k = 0; k < 3 && !param; ++k) {
+            std::fill_n(main_.points->var[id] + k * r_.stride + begin, end - begin, attribute[k]);
+        }
+    }
+
+    void fill_one(std::size_t i) const {
+        Place place(table_, r_.hits[i]);
+        fill_time(i, i + 1);
+        fill_colors(place, place.shape.vars.Cs, place.attributes.color, SL_VAR_Cs, i, i + 1);
+        fill_colors(place, place.shape.vars.Os, place.attributes.opacity, SL_VAR_Os, i, i + 1);
         place.here = place.surface().evaluate(place.at);
         fill_geometry(place, i);
         fill_texture_coordinates(place, i);
@@ -132,18 +170,6 @@ private:
         if (aux_v_.wanted) {
             fill_auxiliary(place, i, 0, dv, aux_v_);
         }
-    }
-
-    void fill_color(const Place& place, const rib::Param* param,
-                    const std::array<float, 3>& attribute, sl_variable id, std::size_t i) const {
-        if (!main_.has(id)) {
-            return;
-        }
-        double value[3];
-        if (param) {
-            interpolate(*param, place.surface(), place.at, value);
-        }
-        main_.set(id, i, param ? vec(value) : color_of(attribute));
     }
 
     void fill_geometry(const Place& p, std::size_t i) const {

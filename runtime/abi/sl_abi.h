@@ -1,16 +1,20 @@
 /* SPDX-License-Identifier: Apache-2.0
- * The contract between a compiled shader and the engine: plain C11, no system header but <stdint.h>.
+ * The contract between a compiled shader and the engine: plain C11, no system header but
+ * <stdint.h>.
  *
- * A shader object exports one symbol, `sl_shader_object`, an sl_object with one sl_variant per instruction set. A
- * shader works on a *batch* of up to SL_BATCH_MAX points of one shader instance; the engine calls `shade` once per
- * packet of `lanes` points. Everything a shader reads and writes arrives through the call, nothing is static: shaders
- * are reentrant and objects refer to no host symbol.
+ * A shader object exports one symbol, `sl_shader_object`, an sl_object with one sl_variant per
+ * instruction set. A shader works on a *batch* of up to SL_BATCH_MAX points of one shader instance;
+ * the engine calls `shade` once per packet of `lanes` points. Everything a shader reads and writes
+ * arrives through the call, nothing is static: shaders are reentrant and objects refer to no host
+ * symbol.
  *
- * Layout of per-point data: structure of arrays. A variable with c components is c planes of `stride` floats; plane k
- * of point i is base[k*stride + i]. Bases are 64-byte aligned and stride is a multiple of 8, so that a packet
- * may read and write whole vectors; lanes beyond `count` hold harmless values and are masked.
+ * Layout of per-point data: structure of arrays. A variable with c components is c planes of
+ * `stride` floats; plane k of point i is base[k*stride + i]. Bases are 64-byte aligned and stride
+ * is a multiple of 8, so that a packet may read and write whole vectors; lanes beyond `count` hold
+ * harmless values and are masked.
  *
- * Spaces: every point, vector and normal a shader sees is in "current" space, which is camera space.
+ * Spaces: every point, vector and normal a shader sees is in "current" space, which is camera
+ * space.
  */
 #ifndef PERIGEE_SL_ABI_H
 #define PERIGEE_SL_ABI_H
@@ -24,17 +28,27 @@ extern "C" {
 enum { SL_BATCH_MAX = 256, SL_LANES_MAX = 8 };
 
 /* An interned, immutable, NUL-terminated string: equal texts have equal pointers. */
-typedef const char *sl_string;
+typedef const char* sl_string;
 
 typedef enum sl_type {
-    SL_TYPE_void, SL_TYPE_float, SL_TYPE_color, SL_TYPE_point, SL_TYPE_vector, SL_TYPE_normal,
-    SL_TYPE_matrix, SL_TYPE_string
+    SL_TYPE_void,
+    SL_TYPE_float,
+    SL_TYPE_color,
+    SL_TYPE_point,
+    SL_TYPE_vector,
+    SL_TYPE_normal,
+    SL_TYPE_matrix,
+    SL_TYPE_string
 } sl_type;
 
 typedef enum sl_detail { SL_DETAIL_uniform, SL_DETAIL_varying } sl_detail;
 
 typedef enum sl_shader_type {
-    SL_SHADER_surface, SL_SHADER_displacement, SL_SHADER_light, SL_SHADER_volume, SL_SHADER_imager,
+    SL_SHADER_surface,
+    SL_SHADER_displacement,
+    SL_SHADER_light,
+    SL_SHADER_volume,
+    SL_SHADER_imager,
     SL_SHADER_transformation
 } sl_shader_type;
 
@@ -49,42 +63,50 @@ typedef enum sl_variable {
     SL_VAR_COUNT
 } sl_variable;
 
-/* ShaderVariables of a batch. var[id] is NULL unless the needed or written mask has the bit. Uniform variables
- * hold one value per component, without planes (component k at base[k]). */
+/* ShaderVariables of a batch. var[id] is NULL unless the needed or written mask has the bit.
+ * Uniform variables hold one value per component, without planes (component k at base[k]). */
 typedef struct sl_points {
-    float *var[SL_VAR_COUNT];
+    float* var[SL_VAR_COUNT];
 } sl_points;
 
 enum { SL_RAY_camera, SL_RAY_reflection, SL_RAY_shadow, SL_RAY_diffuse };
 
 enum {
-    SL_MESSAGE_lightsource, SL_MESSAGE_surface, SL_MESSAGE_displacement, SL_MESSAGE_atmosphere,
-    SL_MESSAGE_incident, SL_MESSAGE_opposite, SL_MESSAGE_attribute, SL_MESSAGE_option,
+    SL_MESSAGE_lightsource,
+    SL_MESSAGE_surface,
+    SL_MESSAGE_displacement,
+    SL_MESSAGE_atmosphere,
+    SL_MESSAGE_incident,
+    SL_MESSAGE_opposite,
+    SL_MESSAGE_attribute,
+    SL_MESSAGE_option,
     SL_MESSAGE_rendererinfo
 };
 
 /* One light asked about the points of one packet. */
 typedef struct sl_light_query {
-    int32_t index;          /* 0 .. light_count()-1 */
-    uint32_t first;         /* batch index of lane 0 */
-    uint32_t lanes;         /* plane length of all pointers here */
-    uint32_t mask;          /* lanes asked */
-    const float *P;         /* points being lit, 3 planes */
-    const float *N;         /* normal there, 3 planes, or NULL: the batch's N if it has one */
-    const float *axis;      /* 3 planes, or NULL: all directions. Lanes outside the cone are not lit ... */
-    const float *cosangle;  /* ... 1 plane: cos of the half angle */
-    sl_string category;     /* "" = all lights */
+    int32_t index;  /* 0 .. light_count()-1 */
+    uint32_t first; /* batch index of lane 0 */
+    uint32_t lanes; /* plane length of all pointers here */
+    uint32_t mask;  /* lanes asked */
+    const float* P; /* points being lit, 3 planes */
+    const float* N; /* normal there, 3 planes, or NULL: the batch's N if it has one */
+    const float*
+        axis; /* 3 planes, or NULL: all directions. Lanes outside the cone are not lit ... */
+    const float* cosangle; /* ... 1 plane: cos of the half angle */
+    sl_string category;    /* "" = all lights */
 } sl_light_query;
 
 /* What arrives there. The engine runs the light, applies shadows, negates L. */
 typedef struct sl_light_result {
-    float L[3 * SL_LANES_MAX];   /* from P towards the light; planes of query->lanes */
+    float L[3 * SL_LANES_MAX]; /* from P towards the light; planes of query->lanes */
     float Cl[3 * SL_LANES_MAX];
     float Ol[3 * SL_LANES_MAX];
     float nondiffuse[SL_LANES_MAX];  /* the light's __nondiffuse, 0 if it has none */
     float nonspecular[SL_LANES_MAX]; /* the light's __nonspecular */
-    int32_t more;   /* non-zero: another sample of this light follows (area lights): ask again with the same
-                       index; the engine scales Cl so that the sum over samples is the light */
+    int32_t
+        more; /* non-zero: another sample of this light follows (area lights): ask again with the
+                 same index; the engine scales Cl so that the sum over samples is the light */
 } sl_light_result;
 
 typedef struct sl_services {
@@ -93,15 +115,17 @@ typedef struct sl_services {
 #undef SL_SERVICE
 } sl_services;
 
-/* A request only the engine can answer for many packets at once (trace and its relatives, filtered texture).
- * A shader that meets one stores it and its live values in its frame, returns SL_SUSPENDED and is called again
- * with the same frame when `result` is filled. Used from the Shading Language and Light issues on. */
+/* A request only the engine can answer for many packets at once (trace and its relatives, filtered
+ * texture). A shader that meets one stores it and its live values in its frame, returns
+ * SL_SUSPENDED and is called again with the same frame when `result` is filled. Used from the
+ * Shading Language and Light issues on. */
 typedef struct sl_request {
-    int32_t builtin;            /* row in sl_builtins.def */
-    uint32_t mask;              /* lanes that ask */
+    int32_t builtin; /* row in sl_builtins.def */
+    uint32_t mask;   /* lanes that ask */
     int32_t num_arguments;
-    const void *argument[16];   /* planes, in the order of the row's arguments; strings: const sl_string* per lane */
-    void *result[8];            /* planes to fill: the value first, then output arguments */
+    const void* argument[16]; /* planes, in the order of the row's arguments; strings: const
+                                 sl_string* per lane */
+    void* result[8];          /* planes to fill: the value first, then output arguments */
 } sl_request;
 
 typedef enum sl_status { SL_DONE = 0, SL_SUSPENDED = 1 } sl_status;
@@ -113,42 +137,44 @@ typedef struct sl_frame {
     sl_request request;
 } sl_frame;
 
-/* One batch. `params` follows sl_param.offset. Differences, not values, for the two auxiliary points:
- * aux_u holds X(u+du,v) - X(u,v), computed free of cancellation; NULL unless the object has area operators. */
+/* One batch. `params` follows sl_param.offset. Differences, not values, for the two auxiliary
+ * points: aux_u holds X(u+du,v) - X(u,v), computed free of cancellation; NULL unless the object has
+ * area operators. */
 typedef struct sl_batch {
-    const sl_points *main;
-    const sl_points *aux_u;
-    const sl_points *aux_v;
-    void *params;
-    const sl_string *strings;      /* the object's literals, interned by the loader */
-    const sl_services *services;
-    void *engine;
-    const uint32_t *seed;          /* per point: source of random(), a function of pixel and sample only */
-    uint32_t count;                /* points in the batch */
-    uint32_t stride;               /* floats per plane */
-    uint32_t *lit;                 /* lights: [packet] lanes that executed illuminate or solar */
+    const sl_points* main;
+    const sl_points* aux_u;
+    const sl_points* aux_v;
+    void* params;
+    const sl_string* strings; /* the object's literals, interned by the loader */
+    const sl_services* services;
+    void* engine;
+    const uint32_t* seed; /* per point: source of random(), a function of pixel and sample only */
+    uint32_t count;       /* points in the batch */
+    uint32_t stride;      /* floats per plane */
+    uint32_t* lit;        /* lights: [packet] lanes that executed illuminate or solar */
 } sl_batch;
 
 /* Parameter block: offsets in bytes, 16-byte aligned slots.
  * uniform numeric: array_length*components floats; uniform string: sl_string each.
- * varying numeric: `float *` to array_length*components planes of `stride`; varying string: `sl_string *`.
- * Output parameters: initialised by the engine with the bound value before every execution. */
+ * varying numeric: `float *` to array_length*components planes of `stride`; varying string:
+ * `sl_string *`. Output parameters: initialised by the engine with the bound value before every
+ * execution. */
 typedef struct sl_param {
-    const char *name;
-    int32_t type;          /* sl_type */
-    int32_t detail;        /* sl_detail */
-    int32_t array_length;  /* 0: not an array */
+    const char* name;
+    int32_t type;         /* sl_type */
+    int32_t detail;       /* sl_detail */
+    int32_t array_length; /* 0: not an array */
     int32_t is_output;
     uint32_t offset;
 } sl_param;
 
 /* What default expressions are evaluated with, once per instance. */
 typedef struct sl_init {
-    void *params;
-    const uint8_t *bound;          /* per parameter: 1 if the caller already stored a value */
-    const sl_string *strings;
-    const sl_services *services;
-    void *engine;
+    void* params;
+    const uint8_t* bound; /* per parameter: 1 if the caller already stored a value */
+    const sl_string* strings;
+    const sl_services* services;
+    void* engine;
 } sl_init;
 
 enum { SL_ISA_any = 0, SL_ISA_avx2 = 1 };
@@ -156,49 +182,52 @@ enum { SL_ISA_any = 0, SL_ISA_avx2 = 1 };
 typedef struct sl_variant {
     int32_t isa;
     int32_t lanes;
-    uint32_t frame_size;   /* bytes of one packet frame, sl_frame included; 0: never suspends, frame may be NULL */
+    uint32_t frame_size; /* bytes of one packet frame, sl_frame included; 0: never suspends, frame
+                            may be NULL */
     uint32_t frame_align;
     /* Shades points first .. first+lanes-1; count_in_packet of them are real. */
-    sl_status (*shade)(const sl_batch *batch, uint32_t first, uint32_t count_in_packet, sl_frame *frame);
-    /* Stores the default of every parameter that is not bound. Varying parameters: the default goes to the
-     * uniform staging slot `offset + 16` of their pointer slot, for the engine to spread. */
-    void (*init)(const sl_init *init);
+    sl_status (*shade)(const sl_batch* batch, uint32_t first, uint32_t count_in_packet,
+                       sl_frame* frame);
+    /* Stores the default of every parameter that is not bound. Varying parameters: the default goes
+     * to the uniform staging slot `offset + 16` of their pointer slot, for the engine to spread. */
+    void (*init)(const sl_init* init);
 } sl_variant;
 
 /* Facts the analysis found; the engine computes, groups and schedules by them. */
 enum {
-    SL_FACT_lights = 1,          /* runs light shaders */
-    SL_FACT_ambient = 2,         /* calls ambient() */
-    SL_FACT_directional = 4,     /* light: contains illuminate or solar, so it is not an ambient light */
-    SL_FACT_area_operators = 8,  /* needs aux_u, aux_v */
-    SL_FACT_traces = 16,         /* may suspend for trace() and its relatives */
+    SL_FACT_lights = 1,  /* runs light shaders */
+    SL_FACT_ambient = 2, /* calls ambient() */
+    SL_FACT_directional =
+        4, /* light: contains illuminate or solar, so it is not an ambient light */
+    SL_FACT_area_operators = 8, /* needs aux_u, aux_v */
+    SL_FACT_traces = 16,        /* may suspend for trace() and its relatives */
     SL_FACT_textures = 32,
-    SL_FACT_object_space = 64,   /* names a space that depends on the primitive: batch by transform */
-    SL_FACT_attributes = 128,    /* attribute() or shader messages: batch by attribute state */
-    SL_FACT_random = 256,        /* needs seed */
-    SL_FACT_solar = 512,         /* light: contains solar */
+    SL_FACT_object_space = 64, /* names a space that depends on the primitive: batch by transform */
+    SL_FACT_attributes = 128,  /* attribute() or shader messages: batch by attribute state */
+    SL_FACT_random = 256,      /* needs seed */
+    SL_FACT_solar = 512,       /* light: contains solar */
     SL_FACT_writes_opacity = 1024
 };
 
 /* The one exported symbol: `const sl_object sl_shader_object`. */
 typedef struct sl_object {
-    const char *fingerprint;     /* SL_ABI_FINGERPRINT of the compiler that made it; first, so that it can be checked
-                                    before anything else is read */
-    const char *name;
-    int32_t type;                /* sl_shader_type */
+    const char* fingerprint; /* SL_ABI_FINGERPRINT of the compiler that made it; first, so that it
+                                can be checked before anything else is read */
+    const char* name;
+    int32_t type; /* sl_shader_type */
     int32_t num_params;
-    const sl_param *params;
-    uint32_t params_size;        /* bytes of the parameter block */
+    const sl_param* params;
+    uint32_t params_size; /* bytes of the parameter block */
     uint32_t facts;
-    uint64_t needed;             /* variables that must be filled */
-    uint64_t written;            /* variables the shader may change */
-    uint64_t needed_aux;         /* variables needed at the auxiliary points */
+    uint64_t needed;     /* variables that must be filled */
+    uint64_t written;    /* variables the shader may change */
+    uint64_t needed_aux; /* variables needed at the auxiliary points */
     int32_t num_strings;
-    const char *const *strings;  /* literals, to be interned by the loader */
+    const char* const* strings; /* literals, to be interned by the loader */
     int32_t num_variants;
-    const sl_variant *const *variants; /* best first */
-    const char *ir;              /* IR text, for specialisation and --explain */
-    const char *source;          /* name of the source file */
+    const sl_variant* const* variants; /* best first */
+    const char* ir;                    /* IR text, for specialisation and --explain */
+    const char* source;                /* name of the source file */
 } sl_object;
 
 #ifdef __cplusplus

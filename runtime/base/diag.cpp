@@ -12,10 +12,14 @@ constexpr std::size_t max_log = 10'000;
 
 std::string_view severity_name(Severity severity) {
     switch (severity) {
-    case Severity::Info: return "info";
-    case Severity::Warning: return "warning";
-    case Severity::Error: return "error";
-    case Severity::Severe: return "severe";
+    case Severity::Info:
+        return "info";
+    case Severity::Warning:
+        return "warning";
+    case Severity::Error:
+        return "error";
+    case Severity::Severe:
+        return "severe";
     }
     return "";
 }

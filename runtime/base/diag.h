@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Messages about user input and the environment: file:line:col: severity: text.
-// One Diag per run, passed down; it is the only writer to standard error and is safe from any thread.
-// Severities and codes are those of the RenderMan Interface (ri.md, section 13).
+// One Diag per run, passed down; it is the only writer to standard error and is safe from any
+// thread. Severities and codes are those of the RenderMan Interface (ri.md, section 13).
 #pragma once
 
 #include <cstdint>
@@ -18,12 +18,33 @@ enum class Severity : std::uint8_t { Info, Warning, Error, Severe };
 
 // RI error codes; values are those of ri.h.
 enum class Code : std::uint8_t {
-    None = 0, NoMem = 1, System = 2, NoFile = 3, BadFile = 4, Version = 5, DiskFull = 6,
-    Incapable = 11, Unimplement = 12, Limit = 13, Bug = 14,
-    NotStarted = 23, Nesting = 24, NotOptions = 25, NotAttribs = 26, NotPrims = 27,
-    IllState = 28, BadMotion = 29, BadSolid = 30,
-    BadToken = 41, Range = 42, Consistency = 43, BadHandle = 44, NoShader = 45,
-    MissingData = 46, Syntax = 47, Math = 61
+    None = 0,
+    NoMem = 1,
+    System = 2,
+    NoFile = 3,
+    BadFile = 4,
+    Version = 5,
+    DiskFull = 6,
+    Incapable = 11,
+    Unimplement = 12,
+    Limit = 13,
+    Bug = 14,
+    NotStarted = 23,
+    Nesting = 24,
+    NotOptions = 25,
+    NotAttribs = 26,
+    NotPrims = 27,
+    IllState = 28,
+    BadMotion = 29,
+    BadSolid = 30,
+    BadToken = 41,
+    Range = 42,
+    Consistency = 43,
+    BadHandle = 44,
+    NoShader = 45,
+    MissingData = 46,
+    Syntax = 47,
+    Math = 61
 };
 
 // A place in user input. file_id indexes Diag's table of file names; 0 means "no place".
@@ -48,7 +69,8 @@ public:
     [[nodiscard]] std::string file_name(std::uint32_t id) const;
 
     void report(Severity severity, Code code, SourcePos pos, std::string_view text);
-    // Only the first report with this key is printed and counted (unknown option, missing shader ...).
+    // Only the first report with this key is printed and counted (unknown option, missing shader
+    // ...).
     void report_once(std::string_view key, Severity severity, Code code, SourcePos pos,
                      std::string_view text);
 
@@ -59,7 +81,9 @@ public:
     void set_threshold(Severity lowest);
 
     [[nodiscard]] std::uint64_t count(Severity severity) const;
-    [[nodiscard]] bool had_errors() const { return count(Severity::Error) + count(Severity::Severe) > 0; }
+    [[nodiscard]] bool had_errors() const {
+        return count(Severity::Error) + count(Severity::Severe) > 0;
+    }
     [[nodiscard]] Code last_code() const; // RiLastError
     // Everything printed so far, for reports (--stats, HTML) and tests.
     [[nodiscard]] std::vector<std::string> messages() const;

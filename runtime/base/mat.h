@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// 4x4 transforms in double precision, stored as RIB lists them: row vectors, p' = p M, translation in row 3.
-// The product reads destination-from-source: cam_from_object = cam_from_world * world_from_object, so that
-// point(cam_from_world, P_world) lines up, although the row-vector matrices multiply the other way round.
-// All composition is in double; only finished results are rounded to float (design.md, section 6).
+// 4x4 transforms in double precision, stored as RIB lists them: row vectors, p' = p M, translation
+// in row 3. The product reads destination-from-source: cam_from_object = cam_from_world *
+// world_from_object, so that point(cam_from_world, P_world) lines up, although the row-vector
+// matrices multiply the other way round. All composition is in double; only finished results are
+// rounded to float (design.md, section 6).
 #pragma once
 
 #include "runtime/base/vec.h"
@@ -18,7 +19,8 @@ struct Mat4 {
     static Mat4 scale(const V3d& s);
     // Degrees; a zero axis gives the identity. reference/ri.md 8.2 (Rodrigues).
     static Mat4 rotate(double angle_deg, const V3d& axis);
-    // Degrees; [RI 3.2] Skew: shears so that d1 turns by the angle towards d2. nullopt when undefined.
+    // Degrees; [RI 3.2] Skew: shears so that d1 turns by the angle towards d2. nullopt when
+    // undefined.
     static std::optional<Mat4> skew(double angle_deg, const V3d& d1, const V3d& d2);
     static Mat4 from_rows(const float* rows16);
 

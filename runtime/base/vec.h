@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Three-component value types shared by every module above the shader ABI.
-// A Vec3 carries no space: variables say it with a suffix (P_cam, dir_object). Color is a separate type so
-// that geometry and light cannot be mixed by accident.
+// A Vec3 carries no space: variables say it with a suffix (P_cam, dir_object). Color is a separate
+// type so that geometry and light cannot be mixed by accident.
 #pragma once
 
 #include <cmath>

@@ -3,7 +3,6 @@
  * nothing diverges, reciprocals and constants hoisted. Noise is compiled along with it, pow comes
  * from the library. */
 #include "noise.c" /* the library's, so that the compiler sees all of it */
-
 #include "noise_phong.h"
 
 static slv load3(const float* p, uint32_t stride, uint32_t i) {

@@ -45,11 +45,11 @@ F1(degrees)
 F1(sin)
 F1(asin)
 F1(cos)
-F1(acos) F1(tan) F1(atan) F2(atan2) F2(pow) F1(exp) F1(sqrt) F1(inversesqrt) F1(log) F2(log_base)
-    F2(mod) F1(abs) F1(sign) F1(floor) F1(ceil) F1(round) F2(step) F3(smoothstep) F1(erf) F1(erfc)
-        F2(min_f) F2(max_f) F3(clamp_f) F3(mix_f)
-            CASE(min_3, min_3, 6, 3, R3(FN(min_3)(A3(0), A3(3)))) CASE(max_3, max_3, 6, 3,
-                                                                       R3(FN(max_3)(A3(0), A3(3))))
+F1(acos)
+F1(tan) F1(atan) F2(atan2) F2(pow) F1(exp) F1(sqrt) F1(inversesqrt) F1(log) F2(log_base) F2(mod)
+    F1(abs) F1(sign) F1(floor) F1(ceil) F1(round) F2(step) F3(smoothstep) F1(erf) F1(erfc) F2(min_f)
+        F2(max_f) F3(clamp_f) F3(mix_f) CASE(min_3, min_3, 6, 3, R3(FN(min_3)(A3(0), A3(3))))
+            CASE(max_3, max_3, 6, 3, R3(FN(max_3)(A3(0), A3(3))))
                 CASE(clamp_3, clamp_3, 9, 3,
                      R3(FN(clamp_3)(A3(0), A3(3), A3(6)))) CASE(mix_3, mix_3, 7, 3,
                                                                 R3(FN(mix_3)(A3(0), A3(3), A(6))))

@@ -151,7 +151,7 @@ void ShadeBatch::point_to(const Layout& layout, std::byte* memory) {
 void ShadeBatch::bind_params(const Layout& layout, std::byte* memory) {
     const sl_object& object = instance_->object();
     auto* block = static_cast<std::byte*>(batch_.params);
-    std::memcpy(block, instance_->params().data(), instance_->params().size());
+    std::copy(instance_->params().begin(), instance_->params().end(), block); // may be empty
     std::size_t at = layout.param_planes;
     for (int i = 0; i < object.num_params; ++i) {
         const sl_param& p = object.params[i];

@@ -10,6 +10,7 @@
 #include <deque>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace slc::ast {
@@ -147,6 +148,9 @@ struct File {
     std::deque<Function> functions;
     std::deque<Shader> shaders;
 };
+
+// The operator as the Shading Language writes it; "" for plain assignment.
+[[nodiscard]] std::string_view op_text(Op op);
 
 // Indented text, for --dump=ast.
 [[nodiscard]] std::string dump(const File& file);

@@ -30,44 +30,6 @@ private:
     int depth_ = 0;
 };
 
-std::string op_text(Op op) {
-    switch (op) {
-    case Op::Add:
-        return "+";
-    case Op::Sub:
-    case Op::Neg:
-        return "-";
-    case Op::Mul:
-        return "*";
-    case Op::Div:
-        return "/";
-    case Op::Dot:
-        return ".";
-    case Op::Cross:
-        return "^";
-    case Op::Eq:
-        return "==";
-    case Op::Ne:
-        return "!=";
-    case Op::Lt:
-        return "<";
-    case Op::Le:
-        return "<=";
-    case Op::Gt:
-        return ">";
-    case Op::Ge:
-        return ">=";
-    case Op::And:
-        return "&&";
-    case Op::Or:
-        return "||";
-    case Op::Not:
-        return "!";
-    default:
-        return "";
-    }
-}
-
 std::string Dumper::list(const std::vector<Expr*>& exprs) {
     std::string out;
     for (const Expr* e : exprs) {
@@ -99,14 +61,14 @@ std::string Dumper::expr(const Expr& e) {
     case ExprKind::Ternary:
         return "(?" + type + list(e.args) + ")";
     case ExprKind::Assign:
-        return "(" + op_text(e.op) + "=" + list(e.args) + ")";
+        return "(" + std::string(op_text(e.op)) + "=" + list(e.args) + ")";
     case ExprKind::Tuple:
         return "(tuple" + type + list(e.args) + ")";
     case ExprKind::Unary:
     case ExprKind::Binary:
         break;
     }
-    return "(" + op_text(e.op) + type + list(e.args) + ")";
+    return "(" + std::string(op_text(e.op)) + type + list(e.args) + ")";
 }
 
 void Dumper::symbol(const std::string& head, const Symbol& s) {
@@ -192,6 +154,44 @@ std::string Dumper::run(const File& file) {
 
 std::string dump(const File& file) {
     return Dumper().run(file);
+}
+
+std::string_view op_text(Op op) {
+    switch (op) {
+    case Op::Add:
+        return "+";
+    case Op::Sub:
+    case Op::Neg:
+        return "-";
+    case Op::Mul:
+        return "*";
+    case Op::Div:
+        return "/";
+    case Op::Dot:
+        return ".";
+    case Op::Cross:
+        return "^";
+    case Op::Eq:
+        return "==";
+    case Op::Ne:
+        return "!=";
+    case Op::Lt:
+        return "<";
+    case Op::Le:
+        return "<=";
+    case Op::Gt:
+        return ">";
+    case Op::Ge:
+        return ">=";
+    case Op::And:
+        return "&&";
+    case Op::Or:
+        return "||";
+    case Op::Not:
+        return "!";
+    default:
+        return "";
+    }
 }
 
 } // namespace slc::ast

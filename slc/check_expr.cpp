@@ -11,6 +11,7 @@ using ast::Costs;
 using ast::Expr;
 using ast::ExprKind;
 using ast::no_cost;
+using ast::op_text;
 using ast::Symbol;
 using ast::SymbolKind;
 
@@ -84,45 +85,6 @@ Type binary_result(Op op, Type l, Type r) {
     }
     default:
         return is_comparison(op) ? comparison_result(op, l, r) : arithmetic_result(op, l, r);
-    }
-}
-
-std::string_view op_text(Op op) {
-    switch (op) {
-    case Op::Add:
-        return "+";
-    case Op::Sub:
-        return "-";
-    case Op::Mul:
-        return "*";
-    case Op::Div:
-        return "/";
-    case Op::Dot:
-        return ".";
-    case Op::Cross:
-        return "^";
-    case Op::Eq:
-        return "==";
-    case Op::Ne:
-        return "!=";
-    case Op::Lt:
-        return "<";
-    case Op::Le:
-        return "<=";
-    case Op::Gt:
-        return ">";
-    case Op::Ge:
-        return ">=";
-    case Op::And:
-        return "&&";
-    case Op::Or:
-        return "||";
-    case Op::Neg:
-        return "-";
-    case Op::Not:
-        return "!";
-    default:
-        return "=";
     }
 }
 

@@ -111,9 +111,8 @@ slc::ObjectOptions compile_options() {
 // What the user named: switches, environment, the current directory, the installation.
 std::vector<std::string> trusted_directories(const trace::RenderOptions& options) {
     std::vector<std::string> directories = options.shader_path;
-    for (const auto& more : {default_shader_path(), installed_shaders()}) {
-        directories.insert(directories.end(), more.begin(), more.end());
-    }
+    const std::vector<std::string> more = default_shader_path();
+    directories.insert(directories.end(), more.begin(), more.end());
     return directories;
 }
 

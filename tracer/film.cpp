@@ -252,6 +252,9 @@ void Film::filter_bucket(std::size_t bucket) {
         gather.add(buckets_[n].samples);
     }
     num_bad_ += gather.run(image_);
+    for (FilmObserver* observer : observers_) {
+        observer->bucket_done(bucket, buckets_[bucket].output, image_);
+    }
 }
 
 } // namespace trace

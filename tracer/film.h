@@ -75,6 +75,15 @@ struct FilmSettings {
 // Option "limits" "bucketsize", Hider "depthfilter".
 [[nodiscard]] FilmSettings film_settings(const rib::Options& options, base::Diag& diag);
 
+// Told of every bucket whose pixels are final. Called once per bucket by the thread that filtered
+// it, for several buckets at the same time: be quick or hand over. The pixels of the bucket do not
+// change any more; those of others may at any moment.
+class FilmObserver {
+public:
+    virtual ~FilmObserver() = default;
+    virtual void bucket_done(std::size_t bucket, const PixelRange& pixels, const Image& image) = 0;
+};
+
 class Film {
 public:
     // nullptr when memory does not suffice, after a message (Code::NoMem: exit code 3).
@@ -90,6 +99,8 @@ public:
     [[nodiscard]] std::size_t num_buckets() const;
     // The pixels whose samples the bucket owns: what Sampler::fill is asked for.
     [[nodiscard]] PixelRange sample_pixels(std::size_t bucket) const;
+    // Before the first submit; the observer must outlive the film's work.
+    void add_observer(FilmObserver& observer) { observers_.push_back(&observer); }
 
     // A buffer for a bucket, every sample uncovered. Thread-safe.
     [[nodiscard]] SampleBuffer buffer(std::size_t bucket);
@@ -123,6 +134,7 @@ private:
     int near_x_ = 1, near_y_ = 1; // buckets that filters reach
     std::vector<Bucket> buckets_;
     Image image_;
+    std::vector<FilmObserver*> observers_;
     std::atomic<std::uint64_t> num_bad_{0};
 
     mutable std::mutex mutex_; // guards what follows and the counts and buffers of the buckets

@@ -9,8 +9,10 @@
 #include <cstring>
 #include <functional>
 #include <gtest/gtest.h>
+#include <mutex>
 #include <numeric>
 #include <random>
+#include <set>
 #include <thread>
 
 namespace {
@@ -49,6 +51,34 @@ void render_bucket(Film& film, const trace::Sampler& sampler, std::size_t bucket
     film.submit(bucket, std::move(samples));
 }
 
+// What an observer is told; compares what it sees then with the finished picture.
+class Recorder : public trace::FilmObserver {
+public:
+    void bucket_done(std::size_t bucket, const trace::PixelRange& pixels,
+                     const Image& image) override {
+        const std::lock_guard lock(mutex_);
+        EXPECT_TRUE(seen_.insert(bucket).second) << "bucket " << bucket << " told twice";
+        num_pixels_ += pixels.area();
+        const auto at = image.pixels;
+        first_.emplace_back(
+            static_cast<std::size_t>((pixels.y0 - at.y0) * at.width() + pixels.x0 - at.x0), 0.0f);
+        first_.back().second = image.plane(Plane::R)[first_.back().first];
+    }
+    void compare(const Image& finished, std::size_t num_buckets) const {
+        EXPECT_EQ(seen_.size(), num_buckets);
+        EXPECT_EQ(num_pixels_, finished.pixels.area());
+        for (const auto& [index, value] : first_) {
+            EXPECT_EQ(finished.plane(Plane::R)[index], value);
+        }
+    }
+
+private:
+    std::mutex mutex_;
+    std::set<std::size_t> seen_;
+    std::size_t num_pixels_ = 0;
+    std::vector<std::pair<std::size_t, float>> first_;
+};
+
 struct Outcome {
     Image image;
     std::uint64_t bad = 0;
@@ -66,6 +96,8 @@ Outcome render(const Job& job, const Scene& scene) {
     const trace::Sampler sampler({.nx = job.nx, .ny = job.ny, .jitter = job.jitter});
     const trace::FilterWeights weights(trace::Filter(job.filter, job.wx, job.wy, diag), sampler);
     const auto film = Film::create(raster, sampler, weights, job.settings, diag);
+    Recorder recorder;
+    film->add_observer(recorder);
     std::vector<std::size_t> order(film->num_buckets());
     std::iota(order.begin(), order.end(), std::size_t{0});
     if (job.order_seed != 0) {
@@ -86,6 +118,9 @@ Outcome render(const Job& job, const Scene& scene) {
         t.join();
     }
     EXPECT_TRUE(film->complete());
+    if (job.frame_aspect == 0) { // else part of the crop lies beyond the picture
+        recorder.compare(film->image(), film->num_buckets());
+    }
     return {film->image(), film->num_bad_samples(), film->num_buckets(), film->peak_bytes()};
 }
 

@@ -41,37 +41,45 @@ install_packages() {
         apt-get install -y --no-install-recommends $missing
 }
 
-# configure FOLDER MESON-OPTIONS...: reconfigures a folder that exists, so that new test cases are seen.
+# configure FOLDER MESON-OPTIONS...: sets a build folder up. Meson lists the test cases when it configures, so a folder
+# that exists is configured again when cases came or went.
 configure() {
     local folder=$1; shift
-    # An interrupted first configuration leaves a folder that Meson cannot reconfigure.
+    local cases; cases=$(python3 -B "$root/testsuite/run.py" --list-cases)
+    # An interrupted first configuration leaves a folder that Meson cannot configure again.
     [ -f "$folder/build.ninja" ] || rm -rf "$folder"
     if [ ! -d "$folder" ]; then
         say "configure: $(basename "$folder")"
         logged "$root/build-logs/configure.log" meson setup "$folder" "$root" "$@"
+    elif [ "$cases" != "$(cat "$folder/cases.seen" 2>/dev/null)" ]; then
+        logged "$root/build-logs/configure.log" meson setup --reconfigure "$folder" "$root"
     fi
+    printf '%s\n' "$cases" >"$folder/cases.seen"
 }
 
-# Meson counts the cases when it configures; a case added since needs another configuration.
-refresh() {
-    local folder=$1 listed=$1/testsuite/cases.seen
-    local now; now=$(python3 -B "$root/testsuite/run.py" --list-cases)
-    [ -f "$listed" ] && [ "$now" = "$(cat "$listed")" ] && return
-    logged "$root/build-logs/configure.log" meson setup --reconfigure "$folder" "$root"
-    mkdir -p "$(dirname "$listed")"
-    printf '%s\n' "$now" >"$listed"
+# What `meson install` installs, as targets of the build; tests and benchmarks are not among them.
+installed_targets() {
+    python3 -B - "$1" <<'PYTHON'
+import json, os, sys
+folder = os.path.realpath(sys.argv[1])
+with open(os.path.join(folder, "meson-info", "intro-installed.json"), encoding="utf-8") as file:
+    for path in map(os.path.realpath, json.load(file)):
+        if path.startswith(folder + os.sep):
+            print(os.path.relpath(path, folder))
+PYTHON
 }
 
+# build FOLDER [TARGET...]: all of it without targets.
 build() {
-    local folder=$1
-    say "build: $(basename "$folder")"
-    logged "$root/build-logs/build.log" ninja -C "$folder"
+    local folder=$1; shift
+    logged "$root/build-logs/build.log" ninja -C "$folder" "$@"
 }
 
 # The build that users get: optimised, assertions off, installed into dist/.
 set_up_release() {
     install_packages
     configure "$root/build-release" --prefix="$root/dist" --libdir=lib --buildtype=release -Doptimization=2
-    build "$root/build-release"
+    say "build: programs and shaders"
+    build "$root/build-release" $(installed_targets "$root/build-release")
     logged "$root/build-logs/install.log" meson install -C "$root/build-release" --no-rebuild --only-changed
 }

@@ -3,8 +3,8 @@
 // already. A writer gets an open OutputFile, fills it and returns; it neither commits nor reports.
 #pragma once
 
+#include "runtime/base/output_file.h"
 #include "tracer/display.h"
-#include "tracer/output_file.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -13,6 +13,8 @@
 #include <vector>
 
 namespace trace {
+
+using base::OutputFile;
 
 enum class ChannelRole : std::uint8_t { Color, Alpha, Depth, Other };
 

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace trace {
+namespace base {
 
 class OutputFile {
 public:
@@ -53,4 +53,4 @@ private:
     std::vector<char> buffer_;    // not written yet
 };
 
-} // namespace trace
+} // namespace base

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files appear complete or not at all, whatever goes wrong in between.
 #include "runtime/base/file.h"
-#include "tracer/output_file.h"
+#include "runtime/base/output_file.h"
 
 #include <cerrno>
 #include <csignal>
@@ -16,7 +16,7 @@
 namespace {
 
 namespace fs = std::filesystem;
-using trace::OutputFile;
+using base::OutputFile;
 
 class OutputFileTest : public testing::Test {
 protected:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracer/output_file.h"
+#include "runtime/base/output_file.h"
 
 #include "runtime/base/file.h"
 
@@ -12,7 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-namespace trace {
+namespace base {
 
 namespace {
 
@@ -198,4 +198,4 @@ bool OutputFile::give_name() {
     return true;
 }
 
-} // namespace trace
+} // namespace base

@@ -8,6 +8,18 @@ namespace base {
 namespace {
 // Kept for reports; a hostile file must not grow it without bound.
 constexpr std::size_t max_log = 10'000;
+constexpr std::size_t max_places = 8;
+constexpr std::size_t no_record = ~std::size_t{0};
+
+// "file:line:col", as far as known.
+std::string place_text(const std::string& file, SourcePos pos) {
+    std::string place = file;
+    if (!file.empty() && pos.line > 0) {
+        place += ":" + std::to_string(pos.line);
+        place += pos.col > 0 ? ":" + std::to_string(pos.col) : "";
+    }
+    return place;
+}
 } // namespace
 
 std::string_view severity_name(Severity severity) {
@@ -20,6 +32,17 @@ std::string_view severity_name(Severity severity) {
         return "error";
     case Severity::Severe:
         return "severe";
+    }
+    return "";
+}
+
+std::string_view code_name(Code code) {
+    switch (code) {
+#define DIAG_CODE(name, value, ri_name)                                                            \
+    case Code::name:                                                                               \
+        return ri_name;
+#include "runtime/base/diag_codes.def"
+#undef DIAG_CODE
     }
     return "";
 }
@@ -40,24 +63,26 @@ std::string Diag::file_name(std::uint32_t id) const {
 }
 
 void Diag::report(Severity severity, Code code, SourcePos pos, std::string_view text) {
-    const std::string file = file_name(pos.file_id);
+    const std::string place = place_text(file_name(pos.file_id), pos);
     const std::lock_guard lock(mutex_);
-    std::string line;
-    if (!file.empty()) {
-        line = file + ":";
-        if (pos.line > 0) {
-            line += std::to_string(pos.line) + ":";
-        }
-        if (pos.col > 0) {
-            line += std::to_string(pos.col) + ":";
-        }
-        line += " ";
-    } else {
-        line = "perigee: ";
+    record(severity, code, place, text);
+    say(severity, code, place, text);
+}
+
+void Diag::report_once(std::string_view key, Severity severity, Code code, SourcePos pos,
+                       std::string_view text) {
+    const std::string place = place_text(file_name(pos.file_id), pos);
+    const std::lock_guard lock(mutex_);
+    const auto [it, is_new] = seen_.try_emplace(std::string(key), no_record);
+    if (is_new) {
+        it->second = record(severity, code, place, text);
+        say(severity, code, place, text);
+    } else if (it->second != no_record) {
+        ++records_[it->second].count;
     }
-    line += severity_name(severity);
-    line += ": ";
-    line += text;
+}
+
+void Diag::say(Severity severity, Code code, const std::string& place, std::string_view text) {
     ++counts_[static_cast<int>(severity)];
     if (code != Code::None) {
         last_ = code;
@@ -68,21 +93,38 @@ void Diag::report(Severity severity, Code code, SourcePos pos, std::string_view 
     if (handler_ == ErrorHandler::Ignore || severity < threshold_) {
         return;
     }
+    std::string line = place.empty() ? "perigee" : place;
+    line += ": ";
+    line += severity_name(severity);
+    line += ": ";
+    line += text;
     std::fprintf(out_, "%s\n", line.c_str());
     if (log_.size() < max_log) {
         log_.push_back(std::move(line));
     }
 }
 
-void Diag::report_once(std::string_view key, Severity severity, Code code, SourcePos pos,
-                       std::string_view text) {
-    {
-        const std::lock_guard lock(mutex_);
-        if (!seen_.emplace(key).second) {
-            return;
+// The record of a message, counted; no_record when there are too many already.
+std::size_t Diag::record(Severity severity, Code code, const std::string& place,
+                         std::string_view text) {
+    std::string key(text);
+    key += static_cast<char>(severity);
+    key += static_cast<char>(code);
+    auto it = record_of_text_.find(key);
+    if (it == record_of_text_.end()) {
+        if (records_.size() >= max_log) {
+            return no_record;
         }
+        it = record_of_text_.emplace(std::move(key), records_.size()).first;
+        records_.push_back({severity, code, std::string(text), 0, {}});
     }
-    report(severity, code, pos, text);
+    MessageRecord& found = records_[it->second];
+    ++found.count;
+    if (!place.empty() && found.places.size() < max_places &&
+        std::find(found.places.begin(), found.places.end(), place) == found.places.end()) {
+        found.places.push_back(place);
+    }
+    return it->second;
 }
 
 void Diag::set_handler(ErrorHandler handler) {
@@ -113,6 +155,11 @@ Code Diag::last_code() const {
 std::vector<std::string> Diag::messages() const {
     const std::lock_guard lock(mutex_);
     return log_;
+}
+
+std::vector<MessageRecord> Diag::records() const {
+    const std::lock_guard lock(mutex_);
+    return records_;
 }
 
 } // namespace base

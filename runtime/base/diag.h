@@ -9,7 +9,7 @@
 #include <mutex>
 #include <string>
 #include <string_view>
-#include <unordered_set>
+#include <unordered_map>
 #include <vector>
 
 namespace base {
@@ -18,33 +18,9 @@ enum class Severity : std::uint8_t { Info, Warning, Error, Severe };
 
 // RI error codes; values are those of ri.h.
 enum class Code : std::uint8_t {
-    None = 0,
-    NoMem = 1,
-    System = 2,
-    NoFile = 3,
-    BadFile = 4,
-    Version = 5,
-    DiskFull = 6,
-    Incapable = 11,
-    Unimplement = 12,
-    Limit = 13,
-    Bug = 14,
-    NotStarted = 23,
-    Nesting = 24,
-    NotOptions = 25,
-    NotAttribs = 26,
-    NotPrims = 27,
-    IllState = 28,
-    BadMotion = 29,
-    BadSolid = 30,
-    BadToken = 41,
-    Range = 42,
-    Consistency = 43,
-    BadHandle = 44,
-    NoShader = 45,
-    MissingData = 46,
-    Syntax = 47,
-    Math = 61
+#define DIAG_CODE(name, value, ri_name) name = value,
+#include "runtime/base/diag_codes.def"
+#undef DIAG_CODE
 };
 
 // A place in user input. file_id indexes Diag's table of file names; 0 means "no place".
@@ -57,6 +33,16 @@ struct SourcePos {
 
 // What to do with a message, RiErrorHandler.
 enum class ErrorHandler : std::uint8_t { Ignore, Print, Abort };
+
+// Messages of one text, for reports. How often it occurred counts repeats that report_once() kept
+// quiet.
+struct MessageRecord {
+    Severity severity = Severity::Info;
+    Code code = Code::None;
+    std::string text;
+    std::uint64_t count = 0;
+    std::vector<std::string> places; // "file:line:col" of the first few
+};
 
 class Diag {
 public:
@@ -87,8 +73,15 @@ public:
     [[nodiscard]] Code last_code() const; // RiLastError
     // Everything printed so far, for reports (--stats, HTML) and tests.
     [[nodiscard]] std::vector<std::string> messages() const;
+    // Every message, printed or not, gathered by text in the order of their first occurrence.
+    [[nodiscard]] std::vector<MessageRecord> records() const;
 
 private:
+    // With the lock held.
+    std::size_t record(Severity severity, Code code, const std::string& place,
+                       std::string_view text);
+    void say(Severity severity, Code code, const std::string& place, std::string_view text);
+
     mutable std::mutex mutex_;
     std::FILE* out_;
     ErrorHandler handler_ = ErrorHandler::Print;
@@ -98,9 +91,12 @@ private:
     std::uint64_t counts_[4] = {};
     std::vector<std::string> files_;
     std::vector<std::string> log_;
-    std::unordered_set<std::string> seen_;
+    std::vector<MessageRecord> records_;
+    std::unordered_map<std::string, std::size_t> record_of_text_;
+    std::unordered_map<std::string, std::size_t> seen_; // key of report_once(): its record
 };
 
 [[nodiscard]] std::string_view severity_name(Severity severity);
+[[nodiscard]] std::string_view code_name(Code code); // RIE_RANGE
 
 } // namespace base

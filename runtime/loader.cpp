@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One .slo file becomes one ShaderObject. The only caller of dlopen.
+// One .slo file becomes one ShaderObject. The only caller of dlopen on files that users name.
 // The seal (base/seal.h) is checked on the bytes of the file first: a wrong fingerprint, a
 // truncated or a damaged file never reaches the dynamic linker. The descriptor's own fingerprint
 // and counts are checked after it.

@@ -214,6 +214,9 @@ std::size_t bytes_of(const SampleBuffer& b) {
 
 void Film::submit(std::size_t bucket, SampleBuffer&& samples) {
     assert(samples.pixels == buckets_[bucket].owned);
+    for (FilmObserver* observer : observers_) {
+        observer->samples_in(bucket, buckets_[bucket].output, samples);
+    }
     const auto near = neighbours(bucket);
     std::vector<std::size_t> ready;
     {

@@ -81,6 +81,12 @@ struct FilmSettings {
 class FilmObserver {
 public:
     virtual ~FilmObserver() = default;
+    // Earlier, by the thread that rendered it: the samples are in. Its pixels become final when
+    // those of its neighbours are in too.
+    virtual void samples_in(std::size_t bucket, const PixelRange& pixels,
+                            const SampleBuffer& samples) {
+        (void)bucket, (void)pixels, (void)samples;
+    }
     virtual void bucket_done(std::size_t bucket, const PixelRange& pixels, const Image& image) = 0;
 };
 
@@ -97,6 +103,7 @@ public:
 
     // Buckets are numbered row by row; render them in any order, each once.
     [[nodiscard]] std::size_t num_buckets() const;
+    [[nodiscard]] int columns() const { return columns_; }
     // The pixels whose samples the bucket owns: what Sampler::fill is asked for.
     [[nodiscard]] PixelRange sample_pixels(std::size_t bucket) const;
     // Before the first submit; the observer must outlive the film's work.

@@ -54,10 +54,17 @@ void render_bucket(Film& film, const trace::Sampler& sampler, std::size_t bucket
 // What an observer is told; compares what it sees then with the finished picture.
 class Recorder : public trace::FilmObserver {
 public:
+    void samples_in(std::size_t bucket, const trace::PixelRange& pixels,
+                    const SampleBuffer& samples) override {
+        const std::lock_guard lock(mutex_);
+        EXPECT_TRUE(sampled_.insert(bucket).second) << "bucket " << bucket << " told twice";
+        EXPECT_EQ(samples.pixels.intersected(pixels), pixels);
+    }
     void bucket_done(std::size_t bucket, const trace::PixelRange& pixels,
                      const Image& image) override {
         const std::lock_guard lock(mutex_);
         EXPECT_TRUE(seen_.insert(bucket).second) << "bucket " << bucket << " told twice";
+        EXPECT_TRUE(sampled_.contains(bucket)) << "samples come before pixels";
         num_pixels_ += pixels.area();
         const auto at = image.pixels;
         first_.emplace_back(
@@ -74,7 +81,7 @@ public:
 
 private:
     std::mutex mutex_;
-    std::set<std::size_t> seen_;
+    std::set<std::size_t> seen_, sampled_;
     std::size_t num_pixels_ = 0;
     std::vector<std::pair<std::size_t, float>> first_;
 };

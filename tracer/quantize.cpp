@@ -46,17 +46,17 @@ Exposure exposure_of(const rib::Options& options, const rib::Display& display) {
     return e;
 }
 
+Exposer::Exposer(const Exposure& exposure)
+    : gain_(exposure.gain), power_(1 / positive_or(exposure.gamma, 1)) {}
+
 void apply_exposure(Image& image, const Exposure& exposure) {
     if (exposure == Exposure{}) {
         return;
     }
-    const float power = 1 / positive_or(exposure.gamma, 1);
+    const Exposer exposed(exposure);
     for (const Plane p : {Plane::R, Plane::G, Plane::B}) {
         for (float& c : image.plane(p)) {
-            c *= exposure.gain;
-            if (power != 1) {
-                c = std::copysign(std::pow(std::fabs(c), power), c);
-            }
+            c = exposed(c);
         }
     }
 }

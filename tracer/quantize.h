@@ -7,6 +7,7 @@
 #include "ribtools/scene.h"
 #include "tracer/film.h"
 
+#include <cmath>
 #include <cstdint>
 
 namespace trace {
@@ -19,7 +20,19 @@ struct Exposure {
 // Options with the display's own "exposure", "gain", "gamma" over them. Displays that differ here
 // need their own copy of the picture, exposed and run through the imager.
 [[nodiscard]] Exposure exposure_of(const rib::Options& options, const rib::Display& display);
-// color = (color gain)^(1/gamma) on R G B; negative values keep their sign. gamma <= 0 counts as 1.
+// (color gain)^(1/gamma); negative values keep their sign. gamma <= 0 counts as 1.
+class Exposer {
+public:
+    explicit Exposer(const Exposure& exposure);
+    [[nodiscard]] float operator()(float color) const {
+        const float c = color * gain_;
+        return power_ == 1 ? c : std::copysign(std::pow(std::fabs(c), power_), c);
+    }
+
+private:
+    float gain_, power_;
+};
+// The same on R G B of a picture.
 void apply_exposure(Image& image, const Exposure& exposure);
 
 enum class Storage : std::uint8_t { U8, S8, U16, S16, U32, S32, Float };

@@ -294,10 +294,11 @@ std::uint32_t Accel::occluded(const RayPacket& rays) const {
 }
 
 AccelStats Accel::stats() const {
-    AccelStats s{impl_->top.triangles, impl_->top.analytic, impl_->top.grids, impl_->placed.size(),
-                 0};
-    s.bytes = static_cast<std::uint64_t>(std::max<std::int64_t>(impl_->embree_bytes.load(), 0)) +
-              impl_->top.bytes();
+    AccelStats s{
+        impl_->top.triangles, impl_->top.analytic, impl_->top.grids, impl_->placed.size(), 0, 0};
+    s.embree_bytes =
+        static_cast<std::uint64_t>(std::max<std::int64_t>(impl_->embree_bytes.load(), 0));
+    s.bytes = s.embree_bytes + impl_->top.bytes();
     for (const embree::Level& level : impl_->prototypes) {
         s.triangles += level.triangles;
         s.analytic += level.analytic;

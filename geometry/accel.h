@@ -33,6 +33,7 @@ struct TraceItem {
 struct AccelStats {
     std::uint64_t triangles = 0, analytic = 0, grids = 0, instances = 0;
     std::uint64_t bytes = 0;
+    std::uint64_t embree_bytes = 0; // of them
 };
 
 class Accel {

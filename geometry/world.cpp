@@ -91,6 +91,7 @@ private:
         stats_.quadrics = a.analytic;
         stats_.grids = a.grids;
         stats_.instances = a.instances;
+        stats_.embree_bytes = a.embree_bytes;
         stats_.bytes = a.bytes + table_.shapes.capacity() * sizeof(Shape) +
                        table_.placements.capacity() * sizeof(Placement) +
                        table_.instances.capacity() * sizeof(InstanceRecord);

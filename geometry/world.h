@@ -56,6 +56,7 @@ struct Incident {
 struct Stats {
     std::uint64_t shapes = 0, triangles = 0, quadrics = 0, grids = 0, instances = 0;
     std::uint64_t bytes = 0; // Embree's and ours
+    std::uint64_t embree_bytes = 0;
     double build_seconds = 0;
 };
 

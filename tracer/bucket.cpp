@@ -47,6 +47,7 @@ BucketRenderer::BucketRenderer(const FrameContext& frame, const Camera& camera,
 void BucketRenderer::render(std::size_t bucket, Film& film) {
     sampler_.fill(film.sample_pixels(bucket), block_);
     SampleBuffer samples = film.buffer(bucket);
+    Counters& counters = thread_.counters;
     layer_ = 0;
     behind_.clear();
     trace_camera_rays();
@@ -62,21 +63,30 @@ void BucketRenderer::render(std::size_t bucket, Film& film) {
         trace_behind();
         composite_behind(samples);
     }
+    counters.add(Counter::buckets);
+    counters.add(Counter::samples, block_.count);
+    counters.add(Counter::layers, layer_ + 1);
+    counters.max_layers = std::max<std::uint64_t>(counters.max_layers, layer_ + 1);
+    const PartTimer timer(counters, Part::work_film);
     film.submit(bucket, std::move(samples));
 }
 
 void BucketRenderer::trace_camera_rays() {
+    const PartTimer timer(thread_.counters, Part::work_rays);
     const std::size_t num_packets = block_.num_packets();
     camera_packets_.resize(num_packets);
     hits_.resize(num_packets * lanes);
     camera_.make_rays(block_, camera_packets_);
     frame_.world->intersect(camera_packets_, hits_.data());
+    std::uint64_t num_rays = 0;
     for (std::size_t p = 0; p < num_packets; ++p) {
-        for (std::uint32_t off = ~camera_packets_[p].active & 0xffU; off != 0; off &= off - 1) {
+        const std::uint32_t active = camera_packets_[p].active & 0xffU;
+        num_rays += static_cast<std::uint64_t>(std::popcount(active));
+        for (std::uint32_t off = active ^ 0xffU; off != 0; off &= off - 1) {
             hits_[p * lanes + static_cast<std::size_t>(std::countr_zero(off))] = {};
         }
     }
-    thread_.counters.add(Counter::rays_camera, block_.count);
+    thread_.counters.add(Counter::rays_camera, num_rays);
 }
 
 bool BucketRenderer::is_matte(const geo::Hit& hit) const {
@@ -107,6 +117,7 @@ bool BucketRenderer::composite(Sample& sample, std::array<float, 3>& transmitted
 
 // Shades go straight into the samples: for nearly all of them that is the result.
 void BucketRenderer::composite_first(SampleBuffer& samples) {
+    const PartTimer timer(thread_.counters, Part::work_shade);
     const std::span<const geo::Hit> hits(hits_.data(), block_.count);
     shader_.shade({camera_packets_, {}, block_.seed, {}, 0}, hits, samples.samples);
     const bool may_be_matte = classes_.has_matte();
@@ -130,6 +141,7 @@ void BucketRenderer::composite_first(SampleBuffer& samples) {
 }
 
 void BucketRenderer::composite_behind(SampleBuffer& samples) {
+    const PartTimer timer(thread_.counters, Part::work_shade);
     shades_.resize(std::max(shades_.size(), behind_.size()));
     const std::span<const geo::Hit> hits(hits_.data(), behind_.size());
     behind_rays_.clear();
@@ -157,6 +169,7 @@ void BucketRenderer::composite_behind(SampleBuffer& samples) {
 
 // Rays restart outside the error of the surface they left, in the same direction.
 void BucketRenderer::trace_behind() {
+    const PartTimer timer(thread_.counters, Part::work_rays);
     const std::size_t num_packets = (behind_.size() + lanes - 1) / lanes;
     packets_.assign(num_packets, {});
     hits_.resize(std::max(hits_.size(), num_packets * lanes));

@@ -26,6 +26,7 @@ class ShaderSet;
 class LightSet;
 class LightRun;
 struct LightList;
+class PixelTrace;
 
 // Immutable for the frame, shared by all threads. world, shaders and lights are null while shaders
 // are bound.
@@ -63,6 +64,7 @@ struct ThreadState {
     std::vector<std::unique_ptr<LightRun>> lights; // by light, made on first use
     std::uint64_t batch_serial = 0; // grows with every batch: stale light results are told by it
     std::string printed;            // printf of the bucket in work
+    PixelTrace* trace = nullptr;    // --trace-pixel: told what happens
 };
 
 // Points of one batch that came from rays. All belong to attribute states that shade alike; where a

@@ -70,7 +70,7 @@ public:
         const PhaseTimer timer(tools.stats, Phase::geometry);
         world_ = geo::World::build(
             scene, {camera_.view(), scene.options.shutter_open, settings.num_threads}, tools.diag);
-        tools.stats.world = world_->stats();
+        add_world_stats();
     }
 
     [[nodiscard]] const Camera& camera() const { return camera_; }
@@ -78,16 +78,22 @@ public:
         return {scene_,       spaces_,        tools_.strings, tools_.diag,
                 world_.get(), shaders_.get(), lights_.get()};
     }
+    void add_stats(const Counters& counted) const {
+        tools_.stats.add(counted, shaders_->names(), tick_rate_.seconds_per_tick());
+    }
     [[nodiscard]] const ShaderEntry* imager() const { return shaders_->get(scene_.options.imager); }
 
     FrameResult render(Image& image) const;
 
 private:
     FrameResult render_buckets(Film& film, const Sampler& sampler) const;
+    void add_world_stats() const;
+    void add_film_stats(const Film& film) const;
 
     const rib::Scene& scene_;
     const RenderSettings& settings_;
     const FrameTools& tools_;
+    base::TickRate tick_rate_;
     Camera camera_;
     Spaces spaces_;
     std::unique_ptr<ShaderSet> shaders_;
@@ -109,6 +115,7 @@ FrameResult Frame::render(Image& image) const {
         return FrameResult::Failed;
     }
     const FrameResult result = render_buckets(*film, sampler);
+    add_film_stats(*film);
     image = std::move(film->image());
     return result;
 }
@@ -138,12 +145,45 @@ FrameResult Frame::render_buckets(Film& film, const Sampler& sampler) const {
             return true;
         });
     progress.finish();
+    Counters counters;
     for (const auto& renderer : renderers) {
         if (renderer) {
-            tools_.stats.counters += renderer->thread().counters;
+            counters += renderer->thread().counters;
         }
     }
+    add_stats(counters);
     return film.complete() ? FrameResult::Done : FrameResult::Interrupted;
+}
+
+void Frame::add_world_stats() const {
+    const geo::Stats& world = world_->stats();
+    PerRow<Amount, std::uint64_t>& amounts = tools_.stats.amounts;
+    amounts[Amount::shapes] = world.shapes;
+    amounts[Amount::triangles] = world.triangles;
+    amounts[Amount::quadrics] = world.quadrics;
+    amounts[Amount::grids] = world.grids;
+    amounts[Amount::instances] = world.instances;
+    amounts[Amount::geometry_bytes] = world.bytes;
+    amounts[Amount::embree_bytes] = world.embree_bytes;
+    amounts[Amount::lights] = scene_.lights.size();
+    amounts[Amount::threads] =
+        static_cast<std::uint64_t>(base::thread_count(settings_.num_threads));
+}
+
+void Frame::add_film_stats(const Film& film) const {
+    std::uint64_t num_pixels = 0;
+    for (std::size_t bucket = 0; bucket < film.num_buckets(); ++bucket) {
+        num_pixels += film.sample_pixels(bucket).area();
+    }
+    std::uint64_t bytes = film.peak_bytes();
+    for (const std::vector<float>& plane : film.image().planes) {
+        bytes += plane.size() * sizeof(float);
+    }
+    for (const std::vector<float>& plane : film.image().extra) {
+        bytes += plane.size() * sizeof(float);
+    }
+    tools_.stats.amounts[Amount::sample_pixels] = num_pixels;
+    tools_.stats.amounts[Amount::film_bytes] = bytes;
 }
 
 // The displays of the frame; a scene that names none gets the default one.
@@ -176,8 +216,9 @@ public:
             picture_ = last ? std::move(filtered_) : filtered_;
             apply_exposure(picture_, exposure);
             if (const ShaderEntry* imager = frame_.imager()) {
-                run_imager(frame_.context(), *imager, picture_, settings_.num_threads,
-                           tools_.stats.counters);
+                Counters counters;
+                run_imager(frame_.context(), *imager, picture_, settings_.num_threads, counters);
+                frame_.add_stats(counters);
             }
             exposure_ = exposure;
             is_developed_ = true;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/hit_shader.h"
 
+#include "runtime/base/ticks.h"
 #include "tracer/services.h"
 
 #include <algorithm>
@@ -312,10 +313,14 @@ void HitShader::fill_seeds(rt::ShadeBatch& batch, std::span<const std::uint32_t>
 }
 
 void HitShader::run(rt::ShadeBatch& batch, Execution& execution) {
+    const std::uint64_t start = base::ticks();
     if (batch.run({&service_table(), &execution}) != 0) {
         report_suspended(execution);
     }
     Counters& counters = thread_.counters;
+    ShaderCounters& of_shader = counters.shader(execution.running.number);
+    of_shader.add_time(base::ticks() - start);
+    of_shader.add_batch(batch.count(), batch.num_packets(), execution.lanes());
     counters.add(Counter::batches);
     counters.add(Counter::packets, batch.num_packets());
     counters.add(Counter::lanes_offered, batch.num_packets() * execution.lanes());

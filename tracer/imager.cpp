@@ -2,6 +2,7 @@
 #include "tracer/imager.h"
 
 #include "runtime/base/parallel.h"
+#include "runtime/base/ticks.h"
 #include "tracer/services.h"
 #include "tracer/shader_set.h"
 
@@ -39,9 +40,13 @@ public:
         Execution execution(frame_, imager_);
         execution.thread = &thread;
         execution.batch = &batch;
+        const std::uint64_t start = base::ticks();
         if (batch.run({&service_table(), &execution}) != 0) {
             report_suspended(execution);
         }
+        ShaderCounters& of_shader = thread.counters.shader(imager_.number);
+        of_shader.add_time(base::ticks() - start);
+        of_shader.add_batch(count, batch.num_packets(), execution.lanes());
         thread.counters.add(Counter::points_imager, count);
         thread.counters.add(Counter::bad_values, read_back(batch, first));
     }

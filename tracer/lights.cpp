@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/lights.h"
 
+#include "runtime/base/ticks.h"
 #include "tracer/services.h"
 #include "tracer/shader_set.h"
 
@@ -18,6 +19,8 @@ constexpr std::uint32_t all_lanes = SL_LANES_MAX;
 // A shadow ray ends this fraction before the light, so that rounding of the two ends does not find
 // a surface the light lies on: some ten float roundings of the distance.
 constexpr float short_of_light = 1e-6f;
+// Lights run for a packet at a time: a clock for each would cost more than some lights do.
+constexpr std::uint64_t timed_every = 16;
 
 void fill_triple(rt::ShadeBatch& batch, sl_variable id, const base::V3d& value) {
     if (!batch.has(id)) {
@@ -212,11 +215,23 @@ std::uint32_t LightRun::illuminate(std::uint32_t first, std::uint32_t lanes, std
     fill_points(mask, P, N);
     fill_seeds_and_time();
     reset_results();
+    run(static_cast<std::uint32_t>(std::popcount(mask)));
+    return mask & executed();
+}
+
+void LightRun::run(std::uint32_t num_points) {
+    Counters& counters = asker_->thread->counters;
+    ShaderCounters& of_shader = counters.shader(info_->shader->number);
+    const bool is_timed = of_shader.value[ShaderCount::batches] % timed_every == 0;
+    const std::uint64_t start = is_timed ? base::ticks() : 0;
     if (batch_.run({&service_table(), &*execution_}) != 0) {
         report_suspended(*execution_);
     }
+    if (is_timed) {
+        of_shader.add_time(base::ticks() - start);
+    }
+    of_shader.add_batch(num_points, batch_.num_packets(), execution_->lanes());
     counters.add(Counter::light_packets, batch_.num_packets());
-    return mask & executed();
 }
 
 float LightRun::param(int index, std::uint32_t lane) {

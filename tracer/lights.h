@@ -76,6 +76,7 @@ public:
 
 private:
     void begin();
+    void run(std::uint32_t num_points);
     void fill_frame(const Space& space);
     void fill_points(std::uint32_t mask, const float* P, const float* N);
     void fill_seeds_and_time();

@@ -174,7 +174,7 @@ rib::ReadStatus read_all(rib::Reader& reader, trace::Renderer& renderer,
         if (options.verbose) {
             diag.report(base::Severity::Info, base::Code::None, {}, "reading " + file);
         }
-        renderer.set_default_output(default_output(file));
+        renderer.set_file(file, default_output(file));
         const rib::ReadStatus status = file == "-" ? reader.read_stdin() : reader.read_file(file);
         worst = status == rib::ReadStatus::Ok ? worst : status;
     }
@@ -188,21 +188,24 @@ void report_later_switches(const trace::RenderOptions& options, base::Diag& diag
     }
 }
 
-// False if the statistics could not be written.
-bool report_stats(const trace::RenderOptions& options, const trace::Stats& stats,
+// False after a message if the file could not be written.
+bool write_report(const char* name, const std::string& path, const std::string& text,
                   base::Diag& diag) {
-    if (options.stats) {
-        std::fputs(trace::stats_text(stats).c_str(), stderr);
-    }
-    if (options.stats_json.empty()) {
-        return true;
-    }
-    const std::string error =
-        base::write_file_atomically(options.stats_json, trace::stats_json(stats));
+    const std::string error = base::write_file_atomically(path, text);
     if (!error.empty()) {
-        diag.report(base::Severity::Error, base::Code::System, {}, "--stats-json: " + error);
+        diag.report(base::Severity::Error, base::Code::System, {},
+                    std::string(name) + ": " + error);
     }
     return error.empty();
+}
+
+bool report_run(const trace::RenderOptions& options, const trace::RunRecord& run,
+                base::Diag& diag) {
+    if (options.stats) {
+        std::fputs(trace::run_text(run).c_str(), stderr);
+    }
+    return options.stats_json.empty() ||
+           write_report("--stats-json", options.stats_json, trace::run_json(run), diag);
 }
 
 int exit_code(rib::ReadStatus status, const trace::Renderer& renderer,
@@ -214,7 +217,7 @@ int exit_code(rib::ReadStatus status, const trace::Renderer& renderer,
     return diag.had_errors() || strict_failure ? exit_input : exit_done;
 }
 
-int run(const trace::RenderOptions& options) {
+int run(const trace::RenderOptions& options, const std::vector<const char*>& arguments) {
     base::Diag diag;
     if (options.silent) {
         diag.set_threshold(base::Severity::Error);
@@ -223,16 +226,12 @@ int run(const trace::RenderOptions& options) {
     trace::catch_interrupts();
     trace::Renderer renderer(renderer_config(options), diag);
     rib::Reader reader(renderer, diag, reader_config(options));
-    rib::ReadStatus status = rib::ReadStatus::Ok;
-    {
-        // Frames render while the file is read: their time is taken off below.
-        const trace::PhaseTimer timer(renderer.stats(), trace::Phase::read);
-        status = read_all(reader, renderer, options, diag);
-    }
-    renderer.stats().subtract_frames_from_reading();
+    const rib::ReadStatus status = read_all(reader, renderer, options, diag);
     trace::finish_interrupt();
-    const bool stats_written = report_stats(options, renderer.stats(), diag);
-    return stats_written ? exit_code(status, renderer, options, diag) : exit_environment;
+    trace::RunRecord& record = renderer.finish();
+    record.arguments.assign(arguments.begin(), arguments.end());
+    return report_run(options, record, diag) ? exit_code(status, renderer, options, diag)
+                                             : exit_environment;
 }
 
 } // namespace
@@ -260,5 +259,5 @@ int main(int argc, char** argv) {
                      trace::usage_text(program).c_str());
         return exit_usage;
     }
-    return run(parsed.options);
+    return run(parsed.options, arguments);
 }

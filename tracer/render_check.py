@@ -5,6 +5,7 @@
 usage: render_check.py path/to/render. Scenes use the built-in default surface, so no shader is needed.
 """
 
+import json
 import os
 import signal
 import subprocess
@@ -136,7 +137,55 @@ class Render(unittest.TestCase):
         code, _, messages = self.run_render("--stats", "--stats-json", "s.json", "good.rib")
         self.assertEqual(code, 0)
         self.assertIn("camera rays", messages)
-        self.assertIn('"rays_camera"', self.bytes_of("s.json").decode())
+        statistics = json.loads(self.bytes_of("s.json"))
+        self.assertEqual((statistics["schema"], statistics["version"]), ("perigee-statistics", 1))
+        self.assertEqual(statistics["files"], ["good.rib"])
+        self.check_sums(statistics["total"])
+
+    def check_sums(self, stats):
+        """Counts of one thing by several hands agree."""
+        counters, shaders = stats["counters"], stats["shaders"]
+        self.assertEqual(counters["samples"], stats["amounts"]["sample_pixels"] * 4)
+        self.assertEqual(counters["rays_camera"], counters["samples"])
+        of_type = {t: [s for s in shaders if s["type"] == t] for t in ("surface", "volume", "imager", "light")}
+        self.assertEqual(sum(s["points"] for s in of_type["surface"]), counters["hits"])
+        self.assertEqual(counters["points_surface"], counters["hits"])
+        self.assertEqual(sum(s["points"] for s in of_type["volume"]), counters["points_volume"])
+        self.assertEqual(sum(s["points"] for s in of_type["imager"]), counters["points_imager"])
+        shaded = of_type["surface"] + of_type["volume"]
+        for key in ("batches", "packets", "lanes_offered", "lanes_live"):
+            self.assertEqual(sum(s[key] for s in shaded), counters[key], key)
+        self.assertEqual(sum(s["packets"] for s in of_type["light"]), counters["light_packets"])
+        self.assertLessEqual(counters["lanes_live"], counters["lanes_offered"])
+        self.assertTrue(0 < stats["mean_live_lanes"] <= 8)
+
+    def test_statistics_of_frames_add_up(self):
+        frames = "".join(f'FrameBegin {n}\nDisplay "f{n}.tif" "file" "rgba"\n{self.scene(f"f{n}.tif", size)}FrameEnd\n'
+                         for n, size in ((3, 20), (7, 50)))
+        self.write("two.rib", frames)
+        self.assertEqual(self.run_render("--stats-json", "s.json", "two.rib")[0], 0)
+        statistics = json.loads(self.bytes_of("s.json"))
+        self.assertEqual([f["frame"] for f in statistics["frames"]], [3, 7])
+        self.assertEqual([f["options"]["resolution"] for f in statistics["frames"]], [[20, 20], [50, 50]])
+        for frame in statistics["frames"]:
+            self.check_sums(frame)
+        self.check_sums(statistics["total"])
+        for group in ("counters", "seconds"):
+            for key, value in statistics["total"][group].items():
+                sum_of_frames = sum(f[group][key] for f in statistics["frames"])
+                if key == "read":  # what follows the last frame belongs to none
+                    self.assertGreaterEqual(value, sum_of_frames)
+                else:
+                    self.assertAlmostEqual(value, sum_of_frames, places=9)
+
+    def test_statistics_gather_messages(self):
+        self.write("bad.rib", self.scene().replace("Translate", "Sphere 0 0 0 360 Sphere 0 0 0 360\nNosuch 1\nTranslate", 1))
+        self.assertEqual(self.run_render("-silent", "--stats-json", "s.json", "bad.rib")[0], 1)
+        messages = json.loads(self.bytes_of("s.json"))["messages"]
+        unknown = [m for m in messages if "Nosuch" in m["text"]]
+        self.assertEqual([m["count"] for m in unknown], [1])
+        self.assertTrue(unknown[0]["places"][0].startswith("bad.rib:"))
+        self.assertTrue(unknown[0]["code"].startswith("RIE_"))
 
 
 if __name__ == "__main__":

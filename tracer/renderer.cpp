@@ -43,14 +43,80 @@ bool Renderer::render(std::unique_ptr<rib::Scene> scene) {
     if (scene->options.hider == "null") { // ri.md 6.5: no image
         return true;
     }
-    Stats frame_stats;
-    const FrameResult result = render_frame(
-        *scene, config_.settings, {library_for(scene->options), strings_, diag_, frame_stats});
-    stats_ += frame_stats;
+    const FrameResult result = render_recorded(*scene);
     if (result != FrameResult::Done) {
         result_ = result;
     }
     return result == FrameResult::Done;
+}
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_between(Clock::time_point from, Clock::time_point to) {
+    return std::chrono::duration<double>(to - from).count();
+}
+
+const char* result_text(FrameResult result) {
+    switch (result) {
+    case FrameResult::Done:
+        return "done";
+    case FrameResult::Interrupted:
+        return "interrupted";
+    case FrameResult::Failed:
+        return "failed";
+    }
+    return "";
+}
+
+std::array<std::uint64_t, 4> message_counts(const base::Diag& diag) {
+    std::array<std::uint64_t, 4> counts{};
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+        counts[i] = diag.count(static_cast<base::Severity>(i));
+    }
+    return counts;
+}
+
+} // namespace
+
+// Worlds render while their file is read: a frame's time to read is what passed since the last.
+FrameResult Renderer::render_recorded(const rib::Scene& scene) {
+    FrameRecord frame;
+    frame.stats.seconds[Phase::read] = seconds_between(read_since_, Clock::now());
+    frame.file = run_.files.empty() ? "" : run_.files.back();
+    frame.number = scene.options.frame;
+    frame.is_numbered = scene.options.in_frame;
+    frame.options = frame_options(scene.options);
+    const FrameResult result = render_frame(
+        scene, config_.settings, {library_for(scene.options), strings_, diag_, frame.stats});
+    frame.result = result_text(result);
+    frame.stats.amounts[Amount::peak_bytes] = peak_memory_bytes();
+    frame.num_messages = message_counts(diag_);
+    for (std::size_t i = 0; i < frame.num_messages.size(); ++i) {
+        const std::uint64_t all = frame.num_messages[i];
+        frame.num_messages[i] -= messages_before_[i];
+        messages_before_[i] = all;
+    }
+    run_.total += frame.stats;
+    run_.frames.push_back(std::move(frame));
+    read_since_ = Clock::now();
+    return result;
+}
+
+void Renderer::set_file(std::string name, std::string default_output) {
+    run_.files.push_back(std::move(name));
+    config_.settings.default_output = std::move(default_output);
+}
+
+RunRecord& Renderer::finish() {
+    const auto now = Clock::now();
+    run_.total.seconds[Phase::read] += seconds_between(read_since_, now);
+    read_since_ = now;
+    run_.seconds = seconds_between(start_, now);
+    run_.messages = diag_.records();
+    run_.machine = this_machine();
+    return run_;
 }
 
 namespace {

@@ -6,7 +6,10 @@
 #include "ribtools/backend.h"
 #include "runtime/shader.h"
 #include "tracer/frame.h"
+#include "tracer/run_record.h"
 
+#include <array>
+#include <chrono>
 #include <functional>
 #include <string>
 #include <vector>
@@ -30,11 +33,11 @@ public:
     bool render(std::unique_ptr<rib::Scene> scene) override;
     bool make_texture(const rib::TextureRequest& request) override;
 
-    // The file of worlds without Display from now on.
-    void set_default_output(std::string file) { config_.settings.default_output = std::move(file); }
+    // The file that is read from now on, and that of its worlds without Display.
+    void set_file(std::string name, std::string default_output);
+    // No more frames come. What was done, for reports.
+    RunRecord& finish();
 
-    [[nodiscard]] const Stats& stats() const { return stats_; }
-    [[nodiscard]] Stats& stats() { return stats_; }
     [[nodiscard]] FrameResult result() const { return result_; } // the worst so far
     [[nodiscard]] int num_frames() const { return num_frames_; }
 
@@ -47,7 +50,12 @@ private:
     // A library per search path met: objects stay loaded, and a path change cannot find an older
     // shader.
     std::vector<std::pair<std::vector<std::string>, std::unique_ptr<rt::ShaderLibrary>>> libraries_;
-    Stats stats_;
+    FrameResult render_recorded(const rib::Scene& scene);
+
+    RunRecord run_;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    std::chrono::steady_clock::time_point read_since_ = start_;
+    std::array<std::uint64_t, 4> messages_before_{};
     FrameResult result_ = FrameResult::Done;
     int num_frames_ = 0;
 };

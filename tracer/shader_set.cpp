@@ -201,9 +201,8 @@ ShaderSet::ShaderSet(const ShaderSources& sources)
     : entries_(sources.scene.shaders.size()), tried_(sources.scene.shaders.size()) {
     const rib::Scene& scene = sources.scene;
     if (const rt::ShaderObject* fallback = sources.library.adopt(default_surface_object())) {
-        owned_.push_back(make_entry(sources, *fallback, "defaultsurface", {},
-                                    sources.spaces.camera_from_world(), {}));
-        default_surface_ = owned_.back().get();
+        default_surface_ = add(make_entry(sources, *fallback, "defaultsurface", {},
+                                          sources.spaces.camera_from_world(), {}));
     }
     for (const rib::Attributes& attributes : scene.attributes) {
         load(sources, attributes.surface, SL_SHADER_surface, false);
@@ -244,10 +243,22 @@ void ShaderSet::load(const ShaderSources& sources, rib::ShaderId id, sl_shader_t
     if (object == nullptr) { // the library has said why
         return;
     }
-    owned_.push_back(make_entry(sources, *object, call.name, call.params,
-                                sources.spaces.camera_from(call.world_from_shader, in_camera_space),
-                                call.pos));
-    entries_[id] = owned_.back().get();
+    entries_[id] = add(
+        make_entry(sources, *object, call.name, call.params,
+                   sources.spaces.camera_from(call.world_from_shader, in_camera_space), call.pos));
+}
+
+const ShaderEntry* ShaderSet::add(std::unique_ptr<ShaderEntry> entry) {
+    const sl_object& object = entry->object();
+    const auto [it, is_new] =
+        number_of_object_.emplace(&object, static_cast<std::uint32_t>(names_.size()));
+    if (is_new) {
+        names_.push_back({entry->name, object.source, static_cast<sl_shader_type>(object.type), 0});
+    }
+    entry->number = it->second;
+    ++names_[entry->number].num_instances;
+    owned_.push_back(std::move(entry));
+    return owned_.back().get();
 }
 
 } // namespace trace

@@ -8,15 +8,18 @@
 #include "ribtools/scene.h"
 #include "runtime/shader.h"
 #include "tracer/spaces.h"
+#include "tracer/stats.h"
 
 #include <memory>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 namespace trace {
 
 struct ShaderEntry {
     std::string name;
+    std::uint32_t number = 0;                     // of its shader in ShaderSet::names()
     std::unique_ptr<rt::ShaderInstance> instance; // never null in a finished set
     base::Mat4 camera_from_shader;
     base::SourcePos pos;
@@ -48,15 +51,20 @@ public:
         const ShaderEntry* entry = get(id);
         return entry != nullptr ? entry : default_surface_;
     }
+    // The shaders that instances were made of; statistics are kept per shader.
+    [[nodiscard]] const std::vector<ShaderName>& names() const { return names_; }
 
 private:
     void load(const ShaderSources& sources, rib::ShaderId id, sl_shader_type type,
               bool in_camera_space);
+    const ShaderEntry* add(std::unique_ptr<ShaderEntry> entry);
     [[nodiscard]] const ShaderEntry* shareable(const rib::Scene& scene, rib::ShaderId id) const;
 
     std::vector<std::unique_ptr<ShaderEntry>> owned_;
     std::vector<const ShaderEntry*> entries_; // by ShaderId
     std::vector<bool> tried_;
+    std::vector<ShaderName> names_;
+    std::unordered_map<const sl_object*, std::uint32_t> number_of_object_;
     const ShaderEntry* default_surface_ = nullptr;
 };
 

@@ -79,7 +79,7 @@ struct Transform {
         base::Mat4 m;
         friend bool operator==(const Key&, const Key&) = default;
     };
-    std::vector<Key> keys = {Key{}};
+    std::vector<Key> keys = std::vector<Key>(1);
 
     [[nodiscard]] bool moving() const { return keys.size() > 1; }
     [[nodiscard]] base::Mat4 at(float time) const;

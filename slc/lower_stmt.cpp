@@ -252,12 +252,9 @@ void Lowering::illuminate(const ast::Stmt& s) {
     } else if (illuminate_depth_ > 0) {
         messages_.error_once(s.loc, word + " inside another illuminate or solar");
     }
-    std::vector<Type> types = {s.kind == StmtKind::Solar ? Type::Vector : Type::Point};
-    if (s.kind == StmtKind::Solar) {
-        types.push_back(Type::Float);
-    } else {
-        types.insert(types.end(), {Type::Vector, Type::Float});
-    }
+    const std::vector<Type> types = s.kind == StmtKind::Solar
+                                        ? std::vector{Type::Vector, Type::Float}
+                                        : std::vector{Type::Point, Type::Vector, Type::Float};
     std::vector<VarId> args = operands(s.exprs, types);
     ++illuminate_depth_;
     Block inner = block([&] { statement(*s.body[0], false); });

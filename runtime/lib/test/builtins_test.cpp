@@ -248,19 +248,19 @@ double catmull_kernel(double z) {
     return z < 1 ? 1.5 * z * z * z - 2.5 * z * z + 1 : -.5 * z * z * z + 2.5 * z * z - 4 * z + 2;
 }
 
-constexpr std::initializer_list<Domain> in = {{0.2, 0.8}, {-0.5, 1}, {0.2, 1.5}};
+constexpr std::initializer_list<Domain> filterstep_domains = {{0.2, 0.8}, {-0.5, 1}, {0.2, 1.5}};
 constexpr Expectation filters[] = {
-    {"filterstep_between", in,
+    {"filterstep_between", filterstep_domains,
      FUNCTION(filtered_step(x[0], x[1], x[2], 1, [](double) { return 1.0; })), 8, 2e-6},
-    {"filterstep_triangle", in,
+    {"filterstep_triangle", filterstep_domains,
      FUNCTION(filtered_step(x[0], x[1], x[2], 1, [](double z) { return 1 - std::abs(z); })), 8,
      4e-6},
-    {"filterstep_gaussian", in,
+    {"filterstep_gaussian", filterstep_domains,
      FUNCTION(filtered_step(x[0], x[1], x[2], 1, [](double z) { return std::exp(-2 * z * z); })), 8,
      4e-6},
-    {"filterstep_catmull", in, FUNCTION(filtered_step(x[0], x[1], x[2], 2, catmull_kernel)), 8,
-     8e-6},
-    {"filterstep_width", in,
+    {"filterstep_catmull", filterstep_domains,
+     FUNCTION(filtered_step(x[0], x[1], x[2], 2, catmull_kernel)), 8, 8e-6},
+    {"filterstep_width", filterstep_domains,
      FUNCTION(filtered_step(x[0], x[1] - 0.5 * (x[2] - x[1]), x[2] + 0.5 * (x[2] - x[1]), 1,
                             [](double) { return 1.0; })),
      8, 2e-6},

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/bucket.h"
 
+#include "tracer/pixel_trace.h"
+
 #include <algorithm>
 #include <bit>
 
@@ -50,8 +52,12 @@ void BucketRenderer::render(std::size_t bucket, Film& film) {
     Counters& counters = thread_.counters;
     layer_ = 0;
     behind_.clear();
+    if (thread_.trace != nullptr) {
+        thread_.trace->begin_bucket(block_);
+    }
     trace_camera_rays();
     composite_first(samples);
+    tell_layer(samples);
     while (!behind_.empty()) {
         if (++layer_ > max_layers) {
             frame_.diag.report_once(
@@ -62,6 +68,10 @@ void BucketRenderer::render(std::size_t bucket, Film& film) {
         }
         trace_behind();
         composite_behind(samples);
+        tell_layer(samples);
+    }
+    if (thread_.trace != nullptr) {
+        thread_.trace->end_bucket(samples);
     }
     counters.add(Counter::buckets);
     counters.add(Counter::samples, block_.count);
@@ -87,6 +97,20 @@ void BucketRenderer::trace_camera_rays() {
         }
     }
     thread_.counters.add(Counter::rays_camera, num_rays);
+    for (std::uint32_t i = 0; thread_.trace != nullptr && i < block_.count; ++i) {
+        thread_.trace->ray(i, camera_packets_[i / lanes], i % lanes, hits_[i]);
+    }
+}
+
+// --trace-pixel: what the layer that was just composited left.
+void BucketRenderer::tell_layer(const SampleBuffer& samples) const {
+    if (thread_.trace == nullptr) {
+        return;
+    }
+    thread_.trace->composited(samples.samples);
+    for (const Behind& b : behind_) {
+        thread_.trace->continues(b.ray, b.transmitted);
+    }
 }
 
 bool BucketRenderer::is_matte(const geo::Hit& hit) const {
@@ -190,6 +214,9 @@ void BucketRenderer::trace_behind() {
     }
     frame_.world->intersect(packets_, hits_.data());
     thread_.counters.add(Counter::rays_behind, behind_.size());
+    for (std::size_t i = 0; thread_.trace != nullptr && i < behind_.size(); ++i) {
+        thread_.trace->ray(behind_[i].ray, packets_[i / lanes], i % lanes, hits_[i]);
+    }
 }
 
 } // namespace trace

@@ -42,6 +42,7 @@ private:
     };
     void trace_camera_rays();
     void trace_behind();
+    void tell_layer(const SampleBuffer& samples) const;
     void composite_first(SampleBuffer& samples);
     void composite_behind(SampleBuffer& samples);
     // Adds a shade to a sample; true if something behind it still shows.

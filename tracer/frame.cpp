@@ -10,6 +10,7 @@
 #include "tracer/imager.h"
 #include "tracer/lights.h"
 #include "tracer/not_done.h"
+#include "tracer/pixel_trace.h"
 #include "tracer/quantize.h"
 #include "tracer/sampler.h"
 #include "tracer/shader_set.h"
@@ -83,10 +84,11 @@ public:
     }
     [[nodiscard]] const ShaderEntry* imager() const { return shaders_->get(scene_.options.imager); }
 
-    FrameResult render(Image& image) const;
+    // With a trace: its pixel only, and the trace is told what happens.
+    FrameResult render(Image& image, PixelTrace* trace = nullptr) const;
 
 private:
-    FrameResult render_buckets(Film& film, const Sampler& sampler) const;
+    FrameResult render_buckets(Film& film, const Sampler& sampler, PixelTrace* trace) const;
     void add_world_stats() const;
     void add_film_stats(const Film& film) const;
 
@@ -102,31 +104,38 @@ private:
     std::unique_ptr<geo::World> world_;
 };
 
-FrameResult Frame::render(Image& image) const {
+FrameResult Frame::render(Image& image, PixelTrace* trace) const {
     const PhaseTimer timer(tools_.stats, Phase::render);
     const rib::Options& options = scene_.options;
     const Sampler sampler(sampler_settings(options, tools_.diag));
     const Filter filter(options.filter, options.filter_width[0], options.filter_width[1],
                         tools_.diag, options.filter_pos);
     const FilterWeights weights(filter, sampler);
-    const std::unique_ptr<Film> film = Film::create(
-        camera_.raster(), sampler, weights, film_settings(options, tools_.diag), tools_.diag);
+    Raster raster = camera_.raster();
+    if (trace != nullptr) { // crop windows do not change a pixel (film-003)
+        raster.crop = trace->pixel();
+    }
+    const std::unique_ptr<Film> film =
+        Film::create(raster, sampler, weights, film_settings(options, tools_.diag), tools_.diag);
     if (!film) {
         return FrameResult::Failed;
     }
-    const FrameResult result = render_buckets(*film, sampler);
+    const FrameResult result = render_buckets(*film, sampler, trace);
+    if (trace != nullptr) {
+        trace->finish(sampler, weights, film->image());
+    }
     add_film_stats(*film);
     image = std::move(film->image());
     return result;
 }
 
-FrameResult Frame::render_buckets(Film& film, const Sampler& sampler) const {
+FrameResult Frame::render_buckets(Film& film, const Sampler& sampler, PixelTrace* trace) const {
     const FrameContext frame = context();
     const VisibilityOptions visibility = visibility_options(scene_.options);
     std::vector<std::unique_ptr<BucketRenderer>> renderers(
         static_cast<std::size_t>(base::thread_count(settings_.num_threads)));
     OrderedPrinter printer(film.num_buckets());
-    Progress progress(settings_.progress, stderr);
+    Progress progress(trace == nullptr ? settings_.progress : ProgressMode::None, stderr);
     progress.start("render", film.num_buckets());
     base::parallel_for(
         film.num_buckets(), settings_.num_threads, [&](std::size_t bucket, int slot) {
@@ -137,6 +146,7 @@ FrameResult Frame::render_buckets(Film& film, const Sampler& sampler) const {
             if (!renderer) {
                 renderer = std::make_unique<BucketRenderer>(frame, camera_, sampler, *classes_,
                                                             visibility);
+                renderer->thread().trace = trace;
             }
             renderer->render(bucket, film);
             printer.finish(bucket, std::move(renderer->thread().printed));
@@ -254,6 +264,39 @@ FrameResult write_displays(const rib::Scene& scene, const Frame& frame,
     return result;
 }
 
+// --trace-pixel: prints what the pixels did, writes no picture.
+FrameResult trace_pixels(const rib::Scene& scene, const Frame& frame,
+                         const RenderSettings& settings, const FrameTools& tools) {
+    const PixelRange rendered = frame.camera().raster().rendered();
+    const FrameContext context = frame.context();
+    for (const auto& [x, y] : settings.trace_pixels) {
+        if (!rendered.contains(x, y)) {
+            report_outside(x, y, rendered, tools.diag);
+            continue;
+        }
+        PixelTrace trace(context, x, y);
+        Image filtered;
+        const FrameResult result = frame.render(filtered, &trace);
+        if (result != FrameResult::Done) {
+            return result;
+        }
+        std::string text = trace.text();
+        for (const rib::Display& display : displays_of(scene.options, settings)) {
+            Image picture = filtered;
+            const Exposure exposure = exposure_of(scene.options, display);
+            apply_exposure(picture, exposure);
+            text += display_title(display) + exposed_text(picture, exposure);
+            if (const ShaderEntry* imager = frame.imager()) {
+                Counters counters;
+                run_imager(context, *imager, picture, settings.num_threads, counters);
+                text += imaged_text(picture, imager->name);
+            }
+        }
+        std::fwrite(text.data(), 1, text.size(), stdout);
+    }
+    return FrameResult::Done;
+}
+
 } // namespace
 
 FrameResult render_image(const rib::Scene& scene, const RenderSettings& settings,
@@ -264,7 +307,8 @@ FrameResult render_image(const rib::Scene& scene, const RenderSettings& settings
 
 FrameResult render_frame(const rib::Scene& scene, const RenderSettings& settings,
                          const FrameTools& tools) {
-    if (settings.keep_existing && all_exist(displays_of(scene.options, settings))) {
+    if (settings.keep_existing && settings.trace_pixels.empty() &&
+        all_exist(displays_of(scene.options, settings))) {
         tools.diag.report(base::Severity::Info, base::Code::None, {},
                           "frame " + std::to_string(scene.options.frame) +
                               ": its pictures exist; skipped");
@@ -273,6 +317,9 @@ FrameResult render_frame(const rib::Scene& scene, const RenderSettings& settings
     const Frame frame(scene, settings, tools);
     if (wants_stop(settings, tools.diag)) {
         return FrameResult::Interrupted;
+    }
+    if (!settings.trace_pixels.empty()) {
+        return trace_pixels(scene, frame, settings, tools);
     }
     Image image;
     const FrameResult rendered = frame.render(image);

@@ -12,6 +12,8 @@
 #include "tracer/stats.h"
 
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace trace {
 
@@ -22,6 +24,8 @@ struct RenderSettings {
     bool (*interrupted)() = nullptr;
     // The file of a scene without Display; "" = nothing is written.
     std::string default_output;
+    // --trace-pixel: what these pixels did is printed, and no picture is made.
+    std::vector<std::pair<int, int>> trace_pixels;
     bool keep_existing = false; // frames whose files are all there already are skipped (-safe)
 };
 

@@ -2,6 +2,7 @@
 #include "tracer/hit_shader.h"
 
 #include "runtime/base/ticks.h"
+#include "tracer/pixel_trace.h"
 #include "tracer/services.h"
 
 #include <algorithm>
@@ -157,11 +158,17 @@ void HitShader::shade_batch(const Group& group, std::span<const std::uint32_t> m
     surface.thread = &thread_;
     surface.batch = &thread_.surface;
     surface.subject = &subject;
+    if (thread_.trace != nullptr) {
+        thread_.trace->begin_batch(rays_.ray, members);
+    }
     run_surface(c, surface, members);
     if (c.atmosphere != nullptr) {
         run_atmosphere(*c.atmosphere, surface, members);
     }
     scatter(members, *c.surface);
+    if (thread_.trace != nullptr) {
+        thread_.trace->shaded(members, out_);
+    }
 }
 
 void HitShader::gather(const ShadingClass& c, std::span<const std::uint32_t> members) {
@@ -313,6 +320,9 @@ void HitShader::fill_seeds(rt::ShadeBatch& batch, std::span<const std::uint32_t>
 }
 
 void HitShader::run(rt::ShadeBatch& batch, Execution& execution) {
+    if (thread_.trace != nullptr) {
+        thread_.trace->before_shader(execution, batch);
+    }
     const std::uint64_t start = base::ticks();
     if (batch.run({&service_table(), &execution}) != 0) {
         report_suspended(execution);
@@ -325,6 +335,9 @@ void HitShader::run(rt::ShadeBatch& batch, Execution& execution) {
     counters.add(Counter::packets, batch.num_packets());
     counters.add(Counter::lanes_offered, batch.num_packets() * execution.lanes());
     counters.add(Counter::lanes_live, batch.count());
+    if (thread_.trace != nullptr) {
+        thread_.trace->after_shader(execution, batch);
+    }
 }
 
 // --- results

@@ -2,6 +2,7 @@
 #include "tracer/lights.h"
 
 #include "runtime/base/ticks.h"
+#include "tracer/pixel_trace.h"
 #include "tracer/services.h"
 #include "tracer/shader_set.h"
 
@@ -289,6 +290,9 @@ std::uint32_t LightRun::unshadowed(std::uint32_t mask) {
     asker_->thread->counters.add(Counter::rays_shadow,
                                  static_cast<std::uint64_t>(std::popcount(unknown)));
     const std::uint32_t blocked = asker_->frame.world->occluded(rays);
+    if (asker_->thread->trace != nullptr) {
+        asker_->thread->trace->shadow_rays(first_, rays, blocked);
+    }
     traced_ |= unknown;
     clear_ = (clear_ & ~unknown) | (unknown & ~blocked);
     return mask & clear_;
@@ -334,7 +338,6 @@ void copy_result(LightRun& run, std::uint32_t lanes, sl_light_result& result) {
         result.nondiffuse[lane] = run.param(info.nondiffuse, lane);
         result.nonspecular[lane] = run.param(info.nonspecular, lane);
     }
-    result.more = 0;
 }
 
 std::uint32_t lanes_with_light(const sl_light_result& result, std::uint32_t lanes) {
@@ -377,16 +380,20 @@ std::uint32_t run_light(Execution& execution, const sl_light_query& query,
     }
     const std::uint32_t lit = run.illuminate(query.first, query.lanes, query.mask, query.P, N);
     execution.current_light = &run;
-    if (lit == 0) {
-        result.more = 0;
-        return 0;
+    std::uint32_t reached = 0, shadowed = 0;
+    if (lit != 0) {
+        copy_result(run, query.lanes, result);
+        reached = lit & in_cone(query, result);
     }
-    copy_result(run, query.lanes, result);
-    const std::uint32_t reached = lit & in_cone(query, result);
     if (run.info().casts_shadows && reached != 0) {
         const std::uint32_t bright = reached & lanes_with_light(result, query.lanes);
-        darken(result, query.lanes, bright & ~run.unshadowed(bright));
+        shadowed = bright & ~run.unshadowed(bright);
+        darken(result, query.lanes, shadowed);
     }
+    if (execution.thread->trace != nullptr) {
+        execution.thread->trace->light(id, run.batch(), query, result, reached, shadowed);
+    }
+    result.more = 0;
     return reached;
 }
 
@@ -401,6 +408,9 @@ void run_ambient(Execution& execution, std::uint32_t first, std::uint32_t mask, 
     for (const rib::LightId id : execution.subject->lights->ambient) {
         LightRun& run = attached(execution, id);
         run.illuminate(first, lanes, mask, P, nullptr);
+        if (execution.thread->trace != nullptr) {
+            execution.thread->trace->ambient(id, run.batch(), first, mask);
+        }
         if (!run.batch().has(SL_VAR_Cl)) {
             continue;
         }

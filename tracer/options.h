@@ -25,6 +25,7 @@ struct RenderOptions {
     std::vector<std::string> rib_texts; // -option
     std::vector<std::string> files;     // "-" is standard input
     std::string stats_json;
+    std::vector<std::pair<int, int>> trace_pixels;
     ProgressMode progress = ProgressMode::Auto;
     bool silent = false, safe = false, verbose = false;
     bool stats = false, allow_programs = false, strict = false;

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// What one pixel did, for --trace-pixel. The frame renders that pixel by the code that renders
+// pictures, on one thread; the renderer tells this sink what happens (a null pointer in ThreadState
+// costs one test per batch or packet), and text comes out. Nothing is computed a second time:
+// values are read from the planes the shaders ran on. Format: docs/statistics.md.
+#pragma once
+
+#include "tracer/execution.h"
+#include "tracer/film.h"
+#include "tracer/filter.h"
+#include "tracer/quantize.h"
+#include "tracer/sampler.h"
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace trace {
+
+class PixelTrace {
+public:
+    PixelTrace(const FrameContext& frame, int x, int y) : frame_(frame), x_(x), y_(y) {}
+
+    [[nodiscard]] PixelRange pixel() const { return {x_, y_, x_ + 1, y_ + 1}; }
+
+    // --- told by the renderer; samples are numbered as in their SampleBlock
+    void begin_bucket(const SampleBlock& block);
+    // A ray of a sample and what it met; the first is the camera's.
+    void ray(std::uint32_t sample, const geo::RayPacket& packet, std::size_t lane,
+             const geo::Hit& hit);
+    // Hits members[i] are point i of the batches that follow; ray_of_hit is empty where hit i is
+    // sample i.
+    void begin_batch(std::span<const std::uint32_t> ray_of_hit,
+                     std::span<const std::uint32_t> members);
+    void before_shader(const Execution& execution, rt::ShadeBatch& batch);
+    void after_shader(const Execution& execution, rt::ShadeBatch& batch);
+    // What a light gave to the lanes asked; the shadow rays it took come before.
+    // batch is the light's: what its shader ran on, lane by lane.
+    void light(rib::LightId id, rt::ShadeBatch& batch, const sl_light_query& query,
+               const sl_light_result& result, std::uint32_t reached, std::uint32_t shadowed);
+    void ambient(rib::LightId id, rt::ShadeBatch& batch, std::uint32_t first, std::uint32_t mask);
+    void shadow_rays(std::uint32_t first, const geo::RayPacket& rays, std::uint32_t blocked);
+    // Colour and opacity as they go to the film, before compositing.
+    void shaded(std::span<const std::uint32_t> members, std::span<const Sample> results);
+    // All surfaces of a layer are in the samples; the ray of `sample` goes on, this much shows.
+    void composited(std::span<const Sample> samples);
+    void continues(std::uint32_t sample, std::span<const float> transmitted);
+    void end_bucket(const SampleBuffer& samples);
+
+    // The film has filtered the pixel: the text is complete.
+    void finish(const Sampler& sampler, const FilterWeights& weights, const Image& filtered);
+    [[nodiscard]] const std::string& text() const { return text_; }
+
+private:
+    struct SampleText {
+        std::uint32_t sample;
+        std::string text;
+        bool is_hit = false; // by the ray in work
+        int num_hits = 0;
+        std::vector<rib::LightId> lights_told; // with their parameters, by the shader in work
+    };
+    [[nodiscard]] SampleText* of_sample(std::uint32_t sample);
+    [[nodiscard]] SampleText* of_point(std::size_t point);
+    void describe_hit(SampleText& to, const geo::RayPacket& packet, std::size_t lane,
+                      const geo::Hit& hit);
+    void tell_light(SampleText& to, rib::LightId id, rt::ShadeBatch& batch, std::uint32_t lane,
+                    const std::string& result);
+    [[nodiscard]] std::string place(base::SourcePos pos) const;
+    [[nodiscard]] std::string primitive_title(const geo::Hit& hit) const;
+    void append_filter(const Sampler& sampler, const FilterWeights& weights);
+
+    const FrameContext& frame_;
+    int x_, y_;
+    std::vector<SampleText> samples_; // of the pixel, as far as they are told in full
+    std::vector<std::uint32_t> sample_of_point_;
+    std::string text_;
+    SampleBuffer kept_; // of the pixel and those in reach of its filter
+};
+
+// What becomes of the pixel on its way to a display; pictures of one pixel.
+[[nodiscard]] std::string display_title(const rib::Display& display);
+[[nodiscard]] std::string exposed_text(const Image& exposed, const Exposure& exposure);
+[[nodiscard]] std::string imaged_text(const Image& imaged, const std::string& imager);
+// An error: the pixel is not one of those that are rendered.
+void report_outside(int x, int y, const PixelRange& rendered, base::Diag& diag);
+
+} // namespace trace

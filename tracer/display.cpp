@@ -401,6 +401,11 @@ rib::Display default_display(std::string file, std::string mode) {
     return d;
 }
 
+bool writes_depth_map(const rib::Display& display) {
+    const DriverRow* row = find_driver(display.type);
+    return row != nullptr && row->driver == Driver::DepthMap;
+}
+
 DisplayResult write_display(const rib::Display& display, const rib::Options& options,
                             const Image& image, const PictureInfo& info, base::Diag& diag) {
     try {

@@ -46,4 +46,7 @@ struct PictureInfo {
 // The display for `-o FILE`, or for a RIB without Display: format by extension, TIFF without one.
 [[nodiscard]] rib::Display default_display(std::string file, std::string mode);
 
+// Displays of type "zfile" and the like: input of MakeShadow rather than pictures.
+[[nodiscard]] bool writes_depth_map(const rib::Display& display);
+
 } // namespace trace

@@ -12,6 +12,7 @@
 #include "tracer/renderer.h"
 #include "tracer/version.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -75,15 +76,24 @@ rib::Options rib_defaults(const trace::RenderOptions& options) {
     return defaults;
 }
 
+// -o names the picture: the first display that is no shadow map. Those, which later requests of the
+// RIB look for by name, and further displays stay as they are.
+void rename_picture(std::vector<rib::Display>& displays, const std::string& file) {
+    const auto picture = std::ranges::find_if_not(displays, trace::writes_depth_map);
+    if (picture != displays.end()) {
+        *picture = trace::default_display(file, picture->mode);
+    } else if (displays.empty()) {
+        displays = {trace::default_display(file, "rgba")};
+    }
+}
+
 void override_options(const trace::RenderOptions& options, rib::Options& rib_options) {
     if (options.crop) {
         rib_options.crop = *options.crop;
     }
     if (!options.output.empty()) {
-        const std::string mode =
-            rib_options.displays.empty() ? "rgba" : rib_options.displays.front().mode;
-        rib_options.displays = {trace::default_display(
-            trace::frame_file_name(options.output, rib_options.frame), mode)};
+        rename_picture(rib_options.displays,
+                       trace::frame_file_name(options.output, rib_options.frame));
     }
 }
 

@@ -76,6 +76,17 @@ class Render(unittest.TestCase):
         self.write("nodir.rib", self.scene("no/such/place.tif"))
         self.assertEqual(self.run_render("nodir.rib")[0], 3)
 
+    def test_o_leaves_other_displays_alone(self):
+        second = 'Display "+second.tif" "file" "rgb"\nProjection'
+        self.write("two.rib", self.scene().replace("Projection", second, 1))
+        self.assertEqual(self.run_render("-o", "b.png", "two.rib")[0], 0)
+        self.assertEqual(self.files(), ["b.png", "second.tif", "two.rib"])
+
+    def test_o_leaves_shadow_maps_alone(self):
+        self.write("map.rib", self.scene().replace('"file" "rgba"', '"zfile" "z"'))
+        self.run_render("-o", "b.png", "map.rib")
+        self.assertNotIn("b.png", self.files())
+
     def test_strict_counts_warnings(self):
         self.write("warn.rib", 'Option "nonsense" "uniform float x" [1]\n' + self.scene())
         self.assertEqual(self.run_render("warn.rib")[0], 0)

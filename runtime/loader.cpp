@@ -38,13 +38,15 @@ const sl_variant* best_variant(const sl_object& object) {
     return nullptr;
 }
 
-std::string why_not_sealed(const std::string& path) {
+// Empty: sealed well, and `content` names what it holds.
+std::string why_not_sealed(const std::string& path, std::string& content) {
     const auto bytes = base::read_file(path);
     if (!bytes) {
         return "cannot be read";
     }
     switch (base::check_seal(*bytes, SL_ABI_FINGERPRINT)) {
     case base::SealState::Good:
+        content = base::sealed_hash(*bytes);
         return {};
     case base::SealState::Missing:
         return "is no shader object of slc, or is truncated";
@@ -71,13 +73,15 @@ bool plausible(const sl_object& object) {
 
 std::unique_ptr<ShaderObject> ShaderObject::open(const std::string& slo_path, StringTable& strings,
                                                  std::string& why) {
-    why = why_not_sealed(slo_path);
+    std::string content;
+    why = why_not_sealed(slo_path, content);
     if (!why.empty()) {
         return nullptr;
     }
     // dlopen searches the system's libraries for names without a slash.
     const std::string file = slo_path.find('/') == std::string::npos ? "./" + slo_path : slo_path;
     std::unique_ptr<ShaderObject> shader(new ShaderObject);
+    shader->content_ = std::move(content);
     shader->handle_ = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!shader->handle_) {
         const char* reason = ::dlerror();

@@ -62,6 +62,8 @@ public:
     [[nodiscard]] const std::vector<sl_string>& strings() const { return strings_; }
     // Index of a parameter, or -1.
     [[nodiscard]] int find_param(std::string_view name) const;
+    // Hash of the file's content; "" for an adopted object, which changes with the program only.
+    [[nodiscard]] const std::string& content() const { return content_; }
 
 private:
     ShaderObject() = default;
@@ -71,6 +73,7 @@ private:
     const sl_object* object_ = nullptr;
     const sl_variant* variant_ = nullptr;
     std::vector<sl_string> strings_;
+    std::string content_;
 };
 
 class ShaderLibrary {

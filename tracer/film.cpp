@@ -27,6 +27,20 @@ std::size_t physical_bytes() {
 
 } // namespace
 
+// --- image
+
+std::vector<std::span<float>> Image::all_planes() {
+    std::vector<std::span<float>> all(planes.begin(), planes.end());
+    all.insert(all.end(), extra.begin(), extra.end());
+    return all;
+}
+
+std::vector<std::span<const float>> Image::all_planes() const {
+    std::vector<std::span<const float>> all(planes.begin(), planes.end());
+    all.insert(all.end(), extra.begin(), extra.end());
+    return all;
+}
+
 // --- settings
 
 DepthFilter depth_filter(const rib::Options& options, base::Diag& diag) {
@@ -65,6 +79,7 @@ struct Film::Bucket {
     SampleBuffer samples;
     std::size_t missing = 0; // buckets of the neighbourhood without samples yet
     std::size_t users = 0;   // buckets of the neighbourhood not filtered yet
+    bool restored = false;
 };
 
 std::unique_ptr<Film> Film::create(const Raster& raster, const Sampler& sampler,
@@ -175,6 +190,10 @@ PixelRange Film::sample_pixels(std::size_t bucket) const {
     return buckets_[bucket].owned;
 }
 
+PixelRange Film::output_pixels(std::size_t bucket) const {
+    return buckets_[bucket].output;
+}
+
 std::size_t Film::peak_bytes() const {
     const std::lock_guard lock(mutex_);
     return bytes_peak_;
@@ -225,7 +244,7 @@ void Film::submit(std::size_t bucket, SampleBuffer&& samples) {
         bytes_peak_ = std::max(bytes_peak_, bytes_held_);
         buckets_[bucket].samples = std::move(samples);
         for (const std::size_t n : near) {
-            if (--buckets_[n].missing == 0) {
+            if (--buckets_[n].missing == 0 && !buckets_[n].restored) {
                 ready.push_back(n);
             }
         }
@@ -236,6 +255,30 @@ void Film::submit(std::size_t bucket, SampleBuffer&& samples) {
     }
 }
 
+// --- buckets of an earlier run
+
+bool Film::restore(std::size_t bucket, std::span<const float> values) {
+    if (bucket >= buckets_.size() || buckets_[bucket].restored ||
+        values.size() != buckets_[bucket].output.area() * num_planes()) {
+        return false;
+    }
+    buckets_[bucket].restored = true;
+    const PixelRange& output = buckets_[bucket].output;
+    const auto width = static_cast<std::size_t>(output.width());
+    for (const std::span<float> plane : image_.all_planes()) {
+        for (int y = output.y0; y < output.y1; ++y, values = values.subspan(width)) {
+            std::ranges::copy(values.first(width), plane.begin() + image_.index(output.x0, y));
+        }
+    }
+    release(bucket);
+    return true;
+}
+
+bool Film::needs_samples(std::size_t bucket) const {
+    const std::lock_guard lock(mutex_);
+    return buckets_[bucket].users > 0;
+}
+
 // One bucket less needs the samples of its neighbourhood.
 void Film::release(std::size_t bucket) {
     const std::lock_guard lock(mutex_);
@@ -243,7 +286,9 @@ void Film::release(std::size_t bucket) {
     for (const std::size_t n : neighbours(bucket)) {
         if (--buckets_[n].users == 0) {
             bytes_held_ -= bytes_of(buckets_[n].samples);
-            pool_.push_back(std::move(buckets_[n].samples));
+            if (!buckets_[n].samples.samples.empty()) {
+                pool_.push_back(std::move(buckets_[n].samples));
+            }
             buckets_[n].samples = {};
         }
     }

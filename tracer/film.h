@@ -60,6 +60,13 @@ struct Image {
     [[nodiscard]] std::span<const float> plane(Plane p) const {
         return planes[static_cast<std::size_t>(p)];
     }
+    // Where pixel (x, y) of the frame stands in a plane.
+    [[nodiscard]] std::ptrdiff_t index(int x, int y) const {
+        return static_cast<std::ptrdiff_t>(y - pixels.y0) * pixels.width() + (x - pixels.x0);
+    }
+    // All of them: `planes`, then `extra`.
+    [[nodiscard]] std::vector<std::span<float>> all_planes();
+    [[nodiscard]] std::vector<std::span<const float>> all_planes() const;
 };
 
 // Depth of a pixel without covered samples.
@@ -106,6 +113,19 @@ public:
     [[nodiscard]] int columns() const { return columns_; }
     // The pixels whose samples the bucket owns: what Sampler::fill is asked for.
     [[nodiscard]] PixelRange sample_pixels(std::size_t bucket) const;
+    // The pixels it computes.
+    [[nodiscard]] PixelRange output_pixels(std::size_t bucket) const;
+    [[nodiscard]] std::size_t num_planes() const {
+        return image_.planes.size() + image_.extra.size();
+    }
+
+    // Takes a bucket as finished: pixels filtered by an earlier run of the same frame, plane by
+    // plane (Plane, then the extra channels). Before the first submit. False: the number of values
+    // is not that of the bucket, or it was restored already.
+    bool restore(std::size_t bucket, std::span<const float> values);
+    // False: only restored buckets would use its samples, so it need not be rendered.
+    [[nodiscard]] bool needs_samples(std::size_t bucket) const;
+
     // Before the first submit; the observer must outlive the film's work.
     void add_observer(FilmObserver& observer) { observers_.push_back(&observer); }
 

@@ -35,8 +35,11 @@ SealState check_seal(std::string_view sealed, std::string_view fingerprint) {
         return SealState::OtherFingerprint;
     }
     const std::string_view content = sealed.substr(0, sealed.size() - seal_size);
-    const std::string_view hash = trailer.substr(magic.size() + hex_digits + 1, hex_digits);
-    return sha256_hex(content) == hash ? SealState::Good : SealState::Damaged;
+    return sha256_hex(content) == sealed_hash(sealed) ? SealState::Good : SealState::Damaged;
+}
+
+std::string_view sealed_hash(std::string_view sealed) {
+    return sealed.substr(sealed.size() - hex_digits - 1, hex_digits);
 }
 
 } // namespace base

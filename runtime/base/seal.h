@@ -16,4 +16,7 @@ enum class SealState { Good, Missing, Damaged, OtherFingerprint };
 
 [[nodiscard]] SealState check_seal(std::string_view sealed, std::string_view fingerprint);
 
+// Hash of the content as a good seal names it; hexadecimal.
+[[nodiscard]] std::string_view sealed_hash(std::string_view sealed);
+
 } // namespace base

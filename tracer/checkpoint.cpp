@@ -18,6 +18,7 @@ using Clock = std::chrono::steady_clock;
 // Between writes: what a killed process loses. And between syncs: what a dying machine loses.
 constexpr Seconds write_interval{0.25};
 constexpr Seconds sync_interval{30};
+constexpr double longest_s = 1e8; // three years; clocks overflow later
 
 } // namespace
 
@@ -37,6 +38,7 @@ Checkpoint::Checkpoint(const CheckpointSettings& settings, std::string path,
                        std::function<Hash()> frame_hash, base::Diag& diag)
     : settings_(settings), path_(std::move(path)), frame_hash_(std::move(frame_hash)), diag_(diag) {
     settings_.enabled = settings_.enabled && !path_.empty();
+    settings_.after_s = std::clamp(settings_.after_s, 0.0, longest_s);
 }
 
 Checkpoint::~Checkpoint() {
@@ -110,10 +112,13 @@ void Checkpoint::bucket_done(std::size_t bucket, const PixelRange& pixels, const
 
 // The writer thread.
 void Checkpoint::run() {
+    const Clock::time_point started = Clock::now();
     std::unique_lock lock(mutex_);
-    if (!file_.is_open() &&
-        wake_.wait_for(lock, Seconds(settings_.after_s), [this] { return stop_; })) {
-        return; // too short to be worth a file
+    if (!file_.is_open()) {
+        wake_.wait_for(lock, Seconds(settings_.after_s), [this] { return stop_; });
+        if (Clock::now() - started < Seconds(settings_.after_s)) {
+            return; // too short to be worth a file
+        }
     }
     Clock::time_point synced = Clock::now();
     for (bool last = false; !last && !given_up_;) {

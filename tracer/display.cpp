@@ -77,6 +77,29 @@ std::optional<Driver> format_of_extension(std::string_view path) {
     return std::nullopt;
 }
 
+// Where a request leads: types that are not known become files.
+struct Target {
+    Driver driver;
+    std::string path;
+    bool known_type;
+};
+
+bool makes_file(Driver driver) {
+    return driver == Driver::Tiff || driver == Driver::Png || driver == Driver::Exr;
+}
+
+Target target_of(const rib::Display& display) {
+    const DriverRow* row = find_driver(display.type);
+    Target target{Driver::File, display.name.empty() ? "ri.tif" : display.name, row != nullptr};
+    target.driver = row != nullptr ? row->driver : Driver::File;
+    if (target.driver == Driver::File) {
+        const auto by_extension = format_of_extension(target.path);
+        target.driver = by_extension.value_or(Driver::Tiff);
+        target.path += by_extension || row != nullptr ? "" : ".tif";
+    }
+    return target;
+}
+
 // --- mode: which channels
 
 struct ChannelRow {
@@ -219,36 +242,19 @@ private:
 
 // False: nothing is written. What that means was said.
 bool DisplayWriter::choose_driver() {
-    const DriverRow* row = find_driver(display_.type);
-    path_ = display_.name.empty() ? "ri.tif" : display_.name;
-    const auto by_extension = format_of_extension(path_);
-    if (row == nullptr) {
-        driver_ = by_extension.value_or(Driver::Tiff);
-        path_ += by_extension ? "" : ".tif";
+    const Target target = target_of(display_);
+    driver_ = target.driver;
+    path_ = target.path;
+    if (!target.known_type) {
         warn(base::Code::Unimplement, "type \"" + display_.type + "\" is not known; writing " +
                                           path_ + (driver_ == Driver::Tiff ? " as TIFF" : ""));
-        return true;
-    }
-    switch (row->driver) {
-    case Driver::File:
-        driver_ = by_extension.value_or(Driver::Tiff);
-        return true;
-    case Driver::Tiff:
-    case Driver::Png:
-    case Driver::Exr:
-        driver_ = row->driver;
-        return true;
-    case Driver::Null:
-        return false;
-    case Driver::Window:
+    } else if (driver_ == Driver::Window) {
         warn(base::Code::Unimplement,
              "type \"" + display_.type + "\" shows a window, which is not done; not written");
-        return false;
-    case Driver::DepthMap:
+    } else if (driver_ == Driver::DepthMap) {
         warn(base::Code::Unimplement, "type \"" + display_.type + "\" is not written yet");
-        return false;
     }
-    return false;
+    return makes_file(driver_);
 }
 
 bool DisplayWriter::choose_channels() {
@@ -391,6 +397,11 @@ PictureInfo picture_info(const Camera& camera) {
     info.window_center[1] = (left.y + right.y) / 2;
     info.window_width = std::fabs(right.x - left.x);
     return info;
+}
+
+std::optional<std::string> display_file(const rib::Display& display) {
+    Target target = target_of(display);
+    return makes_file(target.driver) ? std::optional(std::move(target.path)) : std::nullopt;
 }
 
 rib::Display default_display(std::string file, std::string mode) {

@@ -14,6 +14,7 @@
 #include "tracer/quantize.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,9 @@ struct PictureInfo {
 [[nodiscard]] DisplayResult write_display(const rib::Display& display, const rib::Options& options,
                                           const Image& image, const PictureInfo& info,
                                           base::Diag& diag);
+
+// The file that write_display() will make; nullopt for drivers that make none.
+[[nodiscard]] std::optional<std::string> display_file(const rib::Display& display);
 
 // The display for `-o FILE`, or for a RIB without Display: format by extension, TIFF without one.
 [[nodiscard]] rib::Display default_display(std::string file, std::string mode);

@@ -2,11 +2,13 @@
 #include "tracer/frame.h"
 
 #include "geometry/world.h"
+#include "runtime/base/output_file.h"
 #include "runtime/base/parallel.h"
 #include "tracer/bucket.h"
 #include "tracer/camera.h"
 #include "tracer/display.h"
 #include "tracer/filter.h"
+#include "tracer/frame_hash.h"
 #include "tracer/imager.h"
 #include "tracer/lights.h"
 #include "tracer/not_done.h"
@@ -21,6 +23,7 @@
 #include <filesystem>
 #include <memory>
 #include <new>
+#include <optional>
 #include <vector>
 
 namespace trace {
@@ -84,8 +87,15 @@ public:
     }
     [[nodiscard]] const ShaderEntry* imager() const { return shaders_->get(scene_.options.imager); }
 
-    // With a trace: its pixel only, and the trace is told what happens.
-    FrameResult render(Image& image, PixelTrace* trace = nullptr) const;
+    [[nodiscard]] Checkpoint::Hash hash() const { return frame_hash(scene_, *shaders_); }
+
+    // Who else takes part; either may be null. With a trace: its pixel only, and the trace is told
+    // what happens.
+    struct Company {
+        Checkpoint* checkpoint = nullptr;
+        PixelTrace* trace = nullptr;
+    };
+    FrameResult render(Image& image, const Company& company) const;
 
 private:
     FrameResult render_buckets(Film& film, const Sampler& sampler, PixelTrace* trace) const;
@@ -104,7 +114,8 @@ private:
     std::unique_ptr<geo::World> world_;
 };
 
-FrameResult Frame::render(Image& image, PixelTrace* trace) const {
+FrameResult Frame::render(Image& image, const Company& company) const {
+    const auto& [checkpoint, trace] = company;
     const PhaseTimer timer(tools_.stats, Phase::render);
     const rib::Options& options = scene_.options;
     const Sampler sampler(sampler_settings(options, tools_.diag));
@@ -120,11 +131,17 @@ FrameResult Frame::render(Image& image, PixelTrace* trace) const {
     if (!film) {
         return FrameResult::Failed;
     }
+    if (checkpoint != nullptr) {
+        checkpoint->start(*film);
+    }
     const FrameResult result = render_buckets(*film, sampler, trace);
     if (trace != nullptr) {
         trace->finish(sampler, weights, film->image());
     }
     add_film_stats(*film);
+    if (checkpoint != nullptr) {
+        checkpoint->finish();
+    }
     image = std::move(film->image());
     return result;
 }
@@ -141,6 +158,11 @@ FrameResult Frame::render_buckets(Film& film, const Sampler& sampler, PixelTrace
         film.num_buckets(), settings_.num_threads, [&](std::size_t bucket, int slot) {
             if (wants_stop(settings_, tools_.diag)) {
                 return false;
+            }
+            if (!film.needs_samples(bucket)) { // an earlier run has finished all around it
+                printer.finish(bucket, {});
+                progress.advance();
+                return true;
             }
             std::unique_ptr<BucketRenderer>& renderer = renderers[static_cast<std::size_t>(slot)];
             if (!renderer) {
@@ -208,9 +230,40 @@ std::vector<rib::Display> displays_of(const rib::Options& options, const RenderS
 bool all_exist(const std::vector<rib::Display>& displays) {
     return !displays.empty() &&
            std::all_of(displays.begin(), displays.end(), [](const rib::Display& display) {
+               const std::optional<std::string> file = display_file(display);
                std::error_code error;
-               return std::filesystem::exists(display.name, error);
+               return file && std::filesystem::exists(*file, error);
            });
+}
+
+// Asked before an hour of rendering, not after it. False: no display can be written, and the user
+// knows why.
+bool can_write(const std::vector<rib::Display>& displays, base::Diag& diag) {
+    std::vector<std::pair<const rib::Display*, std::string>> problems;
+    for (const rib::Display& display : displays) {
+        const std::optional<std::string> file = display_file(display);
+        std::string why = file ? base::why_not_writable(*file) : std::string();
+        if (why.empty()) {
+            return true;
+        }
+        problems.emplace_back(&display, *file + ": " + why);
+    }
+    for (const auto& [display, problem] : problems) {
+        diag.report(base::Severity::Severe, base::Code::System, display->pos,
+                    "Display: cannot write " + problem + "; the frame is not rendered");
+    }
+    return displays.empty();
+}
+
+// Beside the first picture.
+std::string checkpoint_of(const std::vector<rib::Display>& displays,
+                          const CheckpointSettings& settings) {
+    for (const rib::Display& display : displays) {
+        if (const std::optional<std::string> file = display_file(display)) {
+            return checkpoint_path(*file, settings.directory);
+        }
+    }
+    return "";
 }
 
 // Displays that ask for the same exposure share one exposed picture. The last one may take the
@@ -276,7 +329,7 @@ FrameResult trace_pixels(const rib::Scene& scene, const Frame& frame,
         }
         PixelTrace trace(context, x, y);
         Image filtered;
-        const FrameResult result = frame.render(filtered, &trace);
+        const FrameResult result = frame.render(filtered, {.checkpoint = nullptr, .trace = &trace});
         if (result != FrameResult::Done) {
             return result;
         }
@@ -302,31 +355,43 @@ FrameResult trace_pixels(const rib::Scene& scene, const Frame& frame,
 FrameResult render_image(const rib::Scene& scene, const RenderSettings& settings,
                          const FrameTools& tools, Image& image) {
     const Frame frame(scene, settings, tools);
-    return frame.render(image);
+    return frame.render(image, {});
 }
 
 FrameResult render_frame(const rib::Scene& scene, const RenderSettings& settings,
                          const FrameTools& tools) {
-    if (settings.keep_existing && settings.trace_pixels.empty() &&
-        all_exist(displays_of(scene.options, settings))) {
+    const std::vector<rib::Display> displays = displays_of(scene.options, settings);
+    const bool tracing = !settings.trace_pixels.empty();
+    if (settings.keep_existing && !tracing && all_exist(displays)) {
         tools.diag.report(base::Severity::Info, base::Code::None, {},
                           "frame " + std::to_string(scene.options.frame) +
                               ": its pictures exist; skipped");
         return FrameResult::Done;
     }
+    if (!tracing && !can_write(displays, tools.diag)) {
+        return FrameResult::Failed;
+    }
     const Frame frame(scene, settings, tools);
     if (wants_stop(settings, tools.diag)) {
         return FrameResult::Interrupted;
     }
-    if (!settings.trace_pixels.empty()) {
+    if (tracing) {
         return trace_pixels(scene, frame, settings, tools);
     }
+    Checkpoint checkpoint(
+        settings.checkpoint, checkpoint_of(displays, settings.checkpoint),
+        [&frame] { return frame.hash(); }, tools.diag);
     Image image;
-    const FrameResult rendered = frame.render(image);
-    if (rendered != FrameResult::Done) {
-        return rendered;
+    FrameResult result = frame.render(image, {.checkpoint = &checkpoint, .trace = nullptr});
+    if (result == FrameResult::Done) {
+        result = write_displays(scene, frame, settings, tools, std::move(image));
     }
-    return write_displays(scene, frame, settings, tools, std::move(image));
+    if (result == FrameResult::Done) {
+        checkpoint.remove();
+    } else {
+        checkpoint.report_kept();
+    }
+    return result;
 }
 
 } // namespace trace

@@ -7,6 +7,7 @@
 #include "ribtools/scene.h"
 #include "runtime/base/diag.h"
 #include "runtime/shader.h"
+#include "tracer/checkpoint.h"
 #include "tracer/film.h"
 #include "tracer/progress.h"
 #include "tracer/stats.h"
@@ -27,8 +28,10 @@ struct RenderSettings {
     // --trace-pixel: what these pixels did is printed, and no picture is made.
     std::vector<std::pair<int, int>> trace_pixels;
     bool keep_existing = false; // frames whose files are all there already are skipped (-safe)
+    CheckpointSettings checkpoint;
 };
 
+// From good to bad.
 enum class FrameResult { Done, Interrupted, Failed /* the environment: exit code 3 */ };
 
 // Everything a frame is made with; all outlive the call.

@@ -236,6 +236,21 @@ private:
         case Id::safe:
             o.safe = true;
             break;
+        case Id::resume:
+            o.checkpoint.resume = true;
+            break;
+        case Id::checkpoint:
+            o.checkpoint.after_s = static_cast<double>(number(0));
+            if (o.checkpoint.after_s < 0) {
+                fail(row, "needs a number of seconds");
+            }
+            break;
+        case Id::no_checkpoint:
+            o.checkpoint.enabled = false;
+            break;
+        case Id::checkpoint_dir:
+            o.checkpoint.directory = values_[0];
+            break;
         case Id::progress90:
             o.progress = ProgressMode::R90000;
             break;

@@ -4,6 +4,7 @@
 // -frames and -shaders override it.
 #pragma once
 
+#include "tracer/checkpoint.h"
 #include "tracer/progress.h"
 
 #include <array>
@@ -26,6 +27,7 @@ struct RenderOptions {
     std::vector<std::string> files;     // "-" is standard input
     std::string stats_json;
     std::vector<std::pair<int, int>> trace_pixels;
+    CheckpointSettings checkpoint;
     ProgressMode progress = ProgressMode::Auto;
     bool silent = false, safe = false, verbose = false;
     bool stats = false, allow_programs = false, strict = false;

@@ -133,6 +133,7 @@ trace::RendererConfig renderer_config(const trace::RenderOptions& options) {
     config.settings.interrupted = trace::is_interrupted;
     config.settings.keep_existing = options.safe;
     config.settings.trace_pixels = options.trace_pixels;
+    config.settings.checkpoint = options.checkpoint;
     config.shaders.search_path = installed_shaders();
     config.shaders.trusted = trusted_directories(options);
     config.shaders.trust_all = options.allow_programs;

@@ -44,10 +44,9 @@ bool Renderer::render(std::unique_ptr<rib::Scene> scene) {
         return true;
     }
     const FrameResult result = render_recorded(*scene);
-    if (result != FrameResult::Done) {
-        result_ = result;
-    }
-    return result == FrameResult::Done;
+    result_ = std::max(result_, result);
+    // Whatever spoilt this frame (a full disk, a directory that is not there) may spare the next.
+    return result != FrameResult::Interrupted;
 }
 
 namespace {

@@ -29,7 +29,7 @@ public:
     Renderer(RendererConfig config, base::Diag& diag);
     ~Renderer() override;
 
-    // False when reading should end: interrupted, or the environment failed.
+    // False when reading should end: interrupted.
     bool render(std::unique_ptr<rib::Scene> scene) override;
     bool make_texture(const rib::TextureRequest& request) override;
 

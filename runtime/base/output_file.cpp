@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <fcntl.h>
 #include <memory>
 #include <sys/stat.h>
@@ -196,6 +197,17 @@ bool OutputFile::give_name() {
     }
     temporary_.clear();
     return true;
+}
+
+std::string why_not_writable(const std::string& path) {
+    struct stat info {};
+    const bool is_special =
+        ::stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode);
+    if (is_special) { // opening a pipe to try it would tell its reader
+        return ::access(path.c_str(), W_OK) == 0 ? "" : std::strerror(errno);
+    }
+    const OutputFile trial(path);
+    return trial.error() == 0 ? "" : std::strerror(trial.error());
 }
 
 } // namespace base

@@ -53,4 +53,7 @@ private:
     std::vector<char> buffer_;    // not written yet
 };
 
+// Whether a file could appear under this name now: "" or why not. Leaves nothing behind.
+[[nodiscard]] std::string why_not_writable(const std::string& path);
+
 } // namespace base

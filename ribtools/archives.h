@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Inline archives (ArchiveBegin, ri.md 6.12): recorded text with the place it came from, found by
-// name.
+// Inline archives (ArchiveBegin, ri.md 6.12): recordings found by name.
 #pragma once
 
-#include "runtime/base/diag.h"
+#include "ribtools/rib_lex.h"
 
 #include <memory>
 #include <string>
@@ -14,8 +13,7 @@ namespace rib {
 
 struct InlineArchive {
     std::string name;
-    std::shared_ptr<const std::string> text;
-    base::SourcePos start; // of the first token, for messages
+    std::shared_ptr<const Recording> recording;
 };
 
 class Archives {

@@ -20,12 +20,17 @@ struct Judge {
     base::SourcePos pos;
 
     bool reject(base::Code code, const std::string& text) const {
-        diag.report(base::Severity::Error, code, pos,
-                    std::string(name) + ": " + text + "; skipped");
+        report(base::Severity::Error, code, pos, text + "; skipped", base::max_alike);
         return false;
     }
-    void warn(base::Code code, base::SourcePos at, const std::string& text) const {
-        diag.report(base::Severity::Warning, code, at, std::string(name) + ": " + text);
+    void warn(base::Code code, base::SourcePos at, const std::string& text,
+              std::uint64_t most = base::max_alike) const {
+        report(base::Severity::Warning, code, at, text, most);
+    }
+    void report(base::Severity severity, base::Code code, base::SourcePos at,
+                const std::string& text, std::uint64_t most) const {
+        const std::string whole = std::string(name) + ": " + text;
+        diag.report_few(base::kind_of(whole), most, severity, code, at, whole);
     }
 };
 
@@ -224,7 +229,8 @@ bool judge_direction(char axis, int n, int& order, std::vector<float>& knots, fl
         to.warn(base::Code::Range, to.pos,
                 std::string("the ") + axis + " range " + num_text(low) + " to " + num_text(high) +
                     " exceeds that of the knots, " + num_text(first) + " to " + num_text(last) +
-                    "; clamped");
+                    "; clamped",
+                1); // programs that do so do it in every patch
         low = std::max(low, first);
         high = std::min(high, last);
     }
@@ -396,9 +402,8 @@ Verdict judge_param(Param& p, const ClassCounts& counts, bool unused_vertices, c
         return Verdict::Reject;
     }
     if (have < wanted) {
-        to.diag.report(base::Severity::Error, base::Code::Consistency, p.pos,
-                       std::string(to.name) + ": " + what +
-                           (position ? "; skipped" : "; parameter dropped"));
+        to.report(base::Severity::Error, base::Code::Consistency, p.pos,
+                  what + (position ? "; skipped" : "; parameter dropped"), base::max_alike);
         return position ? Verdict::Reject : Verdict::Drop;
     }
     const bool per_vertex = wanted == counts.vertex && unused_vertices;

@@ -45,14 +45,16 @@ public:
         try {
             const std::size_t depth = state_.depth();
             const base::SourcePos start{diag_.file_id(name), 1, 1};
-            const base::SourcePos end = read_stream(std::move(source), start, path);
+            Lexer lexer(std::move(source), start, &config_.on_comment);
+            read_stream(lexer, path);
             if (!state_.stopped()) {
-                state_.close_blocks(end, depth);
+                state_.close_blocks(lexer.token().pos, depth, lexer.read_error().empty());
             }
         } catch (const std::bad_alloc&) {
             diag_.report(base::Severity::Severe, base::Code::NoMem, {}, "out of memory");
             return ReadStatus::Environment;
         }
+        diag_.tell_repeated();
         return failed_            ? ReadStatus::Environment
                : state_.stopped() ? ReadStatus::Stopped
                                   : ReadStatus::Ok;
@@ -76,10 +78,10 @@ public:
 
     void begin_archive(const std::string& name, base::SourcePos pos) override {
         InlineArchive archive;
-        std::string text;
-        if (streams_.back().parser->record_archive(pos, text, archive.start)) {
+        Recording recording;
+        if (streams_.back().parser->record_archive(pos, recording)) {
             archive.name = name;
-            archive.text = std::make_shared<const std::string>(std::move(text));
+            archive.recording = std::make_shared<const Recording>(std::move(recording));
             archives_.add(std::move(archive));
         }
     }
@@ -106,10 +108,8 @@ private:
         Conditions conditions;
     };
 
-    // Reads to the end; returns its place.
-    base::SourcePos read_stream(std::unique_ptr<ByteSource> source, base::SourcePos start,
-                                const std::string& path) {
-        Lexer lexer(std::move(source), start, &config_.on_comment);
+    // Reads to the end, which is then the lexer's token.
+    void read_stream(Lexer& lexer, const std::string& path) {
         Parser parser(lexer, diag_, state_.dictionary(), state_.colors());
         streams_.push_back({&parser, path, {}});
         Request request;
@@ -120,19 +120,29 @@ private:
             if (streams_.back().conditions.active() || is_conditional) {
                 state_.execute(request);
             } else if (request.id == RequestId::ArchiveBegin) {
-                std::string text;
-                base::SourcePos ignored;
-                (void)parser.record_archive(request.pos, text, ignored);
+                Recording ignored;
+                (void)parser.record_archive(request.pos, ignored);
             }
         }
-        if (!lexer.read_error().empty()) {
+        if (lexer.read_error().empty()) {
+            streams_.back().conditions.finish(lexer.token().pos, diag_);
+        } else {
+            report_broken(lexer);
+        }
+        streams_.pop_back();
+    }
+
+    // The stream broke off. What that leaves open needs no messages of its own.
+    void report_broken(const Lexer& lexer) {
+        if (lexer.is_damaged()) {
+            diag_.report(base::Severity::Error, base::Code::BadFile, lexer.token().pos,
+                         lexer.read_error() +
+                             "; the rest is not read, an unfinished world not rendered");
+        } else {
             diag_.report(base::Severity::Severe, base::Code::System, lexer.token().pos,
                          "reading failed: " + lexer.read_error());
             failed_ = true;
         }
-        streams_.back().conditions.finish(lexer.token().pos, diag_);
-        streams_.pop_back();
-        return lexer.token().pos;
     }
 
     bool is_open(const std::string& path) const {
@@ -151,11 +161,12 @@ private:
             report_circular(archive.name, pos);
             return;
         }
-        (void)read_stream(open_memory(archive.text), archive.start, mark);
+        Lexer lexer(archive.recording, &config_.on_comment);
+        read_stream(lexer, mark);
     }
 
     void read_archive_file(const std::string& name, base::SourcePos pos) {
-        const std::vector<std::string> candidates = archive_candidates(name);
+        const std::vector<std::string> candidates = candidates_for(name);
         std::string why = "No such file or directory";
         for (const std::string& path : candidates) {
             OpenResult opened = open_file(path);
@@ -166,7 +177,8 @@ private:
                 report_circular(name, pos);
                 return;
             }
-            (void)read_stream(std::move(opened.source), {diag_.file_id(path), 1, 1}, path);
+            Lexer lexer(std::move(opened.source), {diag_.file_id(path), 1, 1}, &config_.on_comment);
+            read_stream(lexer, path);
             return;
         }
         diag_.report(base::Severity::Error, base::Code::NoFile, pos,
@@ -174,35 +186,20 @@ private:
                          std::to_string(candidates.size()) + " places); skipped");
     }
 
-    // The archive path, then the current directory, then beside the file that asks (ri.md 6.12).
-    std::vector<std::string> archive_candidates(const std::string& name) const {
-        std::vector<std::string> result;
-        const auto add = [&](std::string path) {
-            if (path.starts_with("./")) {
-                path.erase(0, 2);
-            }
-            if (std::find(result.begin(), result.end(), path) == result.end()) {
-                result.push_back(std::move(path));
-            }
-        };
-        if (!bypasses_search_path(name)) {
-            const auto& paths = state_.options().search_paths;
-            for (const char* key : {"archive", "resource"}) {
-                const auto it = paths.find(key);
-                for (const std::string& directory :
-                     it == paths.end() ? std::vector<std::string>() : it->second) {
-                    add(directory + "/" + name);
-                }
+    std::vector<std::string> candidates_for(const std::string& name) const {
+        std::vector<std::string> directories, readers;
+        const auto& paths = state_.options().search_paths;
+        for (const char* key : {"archive", "resource"}) {
+            if (const auto it = paths.find(key); it != paths.end()) {
+                directories.insert(directories.end(), it->second.begin(), it->second.end());
             }
         }
-        add(name);
-        for (auto it = streams_.rbegin(); it != streams_.rend() && !name.starts_with("/"); ++it) {
-            const std::size_t slash = it->path.rfind('/');
-            if (slash != std::string::npos && !it->path.starts_with("archive ")) {
-                add(it->path.substr(0, slash + 1) + name);
+        for (auto it = streams_.rbegin(); it != streams_.rend(); ++it) {
+            if (!it->path.starts_with("archive ")) {
+                readers.push_back(it->path);
             }
         }
-        return result;
+        return archive_candidates(name, directories, readers);
     }
 
     base::Diag& diag_;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The entry to ribtools: RIB text enters, finished scenes leave through Backend::render.
+// The entry to ribtools: RIB enters (text, binary, either gzipped), finished scenes leave through
+// Backend::render.
 //
 // One Reader is one rendering context (ri.md 1.2): options, declarations, lights and archives
 // persist from one read_* call to the next. Mistakes in the input are reported to Diag with their
@@ -8,6 +9,7 @@
 #pragma once
 
 #include "ribtools/backend.h"
+#include "ribtools/rib_lex.h"
 #include "ribtools/scene.h"
 #include "runtime/base/diag.h"
 
@@ -41,9 +43,8 @@ struct Config {
     // Says whether a world is wanted (-frames); its primitives are neither kept nor rendered if
     // not. May be empty.
     std::function<bool(const Options&)> wants_world;
-    // Receives comments: kind "structure" (##) or "comment" (#), text without the marks. May be
-    // empty.
-    std::function<void(std::string_view kind, std::string_view text)> on_comment;
+    // Receives comments. May be empty.
+    Lexer::CommentHandler on_comment;
 };
 
 class Reader {

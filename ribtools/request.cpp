@@ -129,6 +129,8 @@ void Request::clear() {
         arg.clear();
     }
     params.params.clear();
+    name.clear();
+    values.clear();
 }
 
 const std::string& Request::string(int i) const {

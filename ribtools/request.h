@@ -19,6 +19,7 @@ enum class RequestId : std::uint8_t {
 #define RI_REQUEST(name, ...) name,
 #define RI_SKIPPED(name, ...) name,
 #include "ribtools/ri_requests.def"
+    Unknown // outside the table; only where requests are kept as they are written
 };
 
 enum class BlockKind : std::uint8_t {
@@ -99,6 +100,13 @@ struct Arg {
     void clear();
 };
 
+// One value of a request whose arguments nobody knows: a number, a string, or an array of either.
+struct LooseValue {
+    bool is_array = false;
+    std::vector<double> numbers;
+    std::vector<std::string> strings;
+};
+
 struct Request {
     static constexpr int max_args = 11;
 
@@ -106,6 +114,9 @@ struct Request {
     base::SourcePos pos;
     std::array<Arg, max_args> args; // as many as the row has; the rest is not given
     ParamList params;
+    // Of requests outside RI 3.2, where they are kept: name and values as they stand.
+    std::string name;
+    std::vector<LooseValue> values;
 
     void clear();
     [[nodiscard]] double number(int i) const { return args[i].numbers.front(); }

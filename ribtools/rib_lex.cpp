@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ribtools/rib_lex.h"
 
+#include "ribtools/rib_binary.h"
+#include "ribtools/rib_chars.h"
+
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 namespace rib {
 
@@ -13,30 +16,6 @@ namespace {
 
 constexpr std::size_t block_size = 256 * 1024;
 constexpr std::size_t least_block = 64;
-// The longest name or number; a longer run of regular characters is garbage.
-constexpr std::ptrdiff_t max_run = 64 * 1024;
-
-enum CharClass : std::uint8_t { Regular, White, LineEnd, Delimiter, High };
-
-constexpr std::array<CharClass, 256> make_classes() {
-    std::array<CharClass, 256> c{};
-    for (std::size_t i = 128; i < 256; ++i) {
-        c[i] = High;
-    }
-    c[' '] = c['\t'] = c['\f'] = c['\v'] = White;
-    c['\n'] = c['\r'] = LineEnd;
-    c['"'] = c['['] = c[']'] = c['#'] = Delimiter;
-    return c;
-}
-constexpr std::array<CharClass, 256> classes = make_classes();
-
-CharClass class_of(char c) {
-    return classes[static_cast<unsigned char>(c)];
-}
-
-bool starts_number(char c) {
-    return (c >= '0' && c <= '9') || c == '-' || c == '+' || c == '.';
-}
 
 } // namespace
 
@@ -61,6 +40,13 @@ Lexer::Lexer(std::unique_ptr<ByteSource> source, base::SourcePos start,
       file_id_(start.file_id), line_(start.line),
       line_start_(1 - static_cast<std::int64_t>(start.col)) {}
 
+Lexer::Lexer(std::shared_ptr<const Recording> recording, const CommentHandler* on_comment)
+    : Lexer(open_memory({recording, &recording->text}), recording->start, on_comment) {
+    block_at_ = recording->start_byte;
+    is_binary_ = recording->start.is_byte();
+    codes_ = recording->codes;
+}
+
 // Moves what is still needed, from keep on, to the front of the buffer and reads more behind it.
 // False at the end of the source or when a token fills the whole buffer.
 bool Lexer::refill(const char*& keep) {
@@ -68,7 +54,7 @@ bool Lexer::refill(const char*& keep) {
         return false;
     }
     if (recording_) {
-        recorded_.append(record_from_, keep);
+        recorded_.text.append(record_from_, keep);
     }
     char* front = buffer_.data() + 1;
     const std::size_t kept = static_cast<std::size_t>(end_ - keep);
@@ -77,6 +63,7 @@ bool Lexer::refill(const char*& keep) {
         return false;
     }
     line_start_ -= keep - front;
+    block_at_ += static_cast<std::uint64_t>(keep - front);
     if (keep > front) {
         buffer_[0] = keep[-1];
     }
@@ -91,6 +78,9 @@ bool Lexer::refill(const char*& keep) {
 }
 
 base::SourcePos Lexer::place(const char* p) const {
+    if (is_binary_) {
+        return base::SourcePos::at_byte(file_id_, offset(p));
+    }
     const std::int64_t col = p - (buffer_.data() + 1) - line_start_ + 1;
     return {file_id_, line_, static_cast<std::uint32_t>(col)};
 }
@@ -106,6 +96,12 @@ void Lexer::newline() {
 
 void Lexer::skip_comment() {
     std::string text;
+    Comment comment;
+    comment.pos = place(p_);
+    const char* front = buffer_.data() + 1;
+    for (const char* p = front + std::max<std::int64_t>(line_start_, 0); p < p_; ++p) {
+        comment.trailing |= class_of(*p) != White;
+    }
     for (;;) {
         const char* begin = p_;
         while (p_ < end_ && class_of(*p_) != LineEnd) {
@@ -120,8 +116,9 @@ void Lexer::skip_comment() {
     }
     if (on_comment_ && *on_comment_) {
         const bool structure = text.starts_with("##");
-        (*on_comment_)(structure ? "structure" : "comment",
-                       std::string_view(text).substr(structure ? 2 : 1));
+        comment.kind = structure ? "structure" : "comment";
+        comment.text = std::string_view(text).substr(structure ? 2 : 1);
+        (*on_comment_)(comment);
     }
 }
 
@@ -147,10 +144,32 @@ bool Lexer::skip_white() {
     }
 }
 
+// The same, past definitions of codes too.
+bool Lexer::skip_to_token() {
+    while (definition_.kind != TokenKind::Bad) {
+        if (!skip_white()) {
+            return false;
+        }
+        if (class_of(*p_) != High || !define()) {
+            break;
+        }
+    }
+    return true;
+}
+
 void Lexer::lex(Token& t) {
     t.text.clear();
     t.reason = nullptr;
-    const bool more = skip_white();
+    if (floats_left_ >= 0) {
+        lex_float_of_array(t);
+        return;
+    }
+    const bool more = skip_to_token();
+    if (definition_.kind == TokenKind::Bad) {
+        std::swap(t, definition_);
+        definition_.kind = TokenKind::End;
+        return;
+    }
     t.pos = place(p_);
     token_begin_ = p_;
     if (!more) {
@@ -181,18 +200,18 @@ void Lexer::lex(Token& t) {
 
 // A name or a number: a run of regular characters.
 void Lexer::lex_run(Token& t) {
+    constexpr auto longest = static_cast<std::ptrdiff_t>(max_run);
     const char* begin = p_;
     do {
-        while (class_of(*p_) == Regular && p_ < end_ && p_ - begin < max_run) {
+        while (class_of(*p_) == Regular && p_ < end_ && p_ - begin < longest) {
             ++p_;
         }
-    } while (p_ == end_ && p_ - begin < max_run && refill(begin));
+    } while (p_ == end_ && p_ - begin < longest && refill(begin));
     token_begin_ = begin;
     t.text.assign(begin, p_);
-    if (p_ - begin == max_run) {
+    if (p_ - begin == longest) {
         skip_run();
-        t.kind = TokenKind::Bad;
-        t.reason = "too long a name or number";
+        bad(t, "too long a name or number", base::Code::Syntax);
         return;
     }
     if (!starts_number(*begin)) {
@@ -201,8 +220,7 @@ void Lexer::lex_run(Token& t) {
     }
     const Decimal d = scan_decimal(begin);
     if (d.end != p_) {
-        t.kind = TokenKind::Bad;
-        t.reason = "malformed number";
+        bad(t, "malformed number", base::Code::Syntax);
         return;
     }
     t.kind = TokenKind::Number;
@@ -228,8 +246,7 @@ void Lexer::lex_string(Token& t) {
         t.text.append(begin, p_);
         if (p_ == end_) {
             if (!refill()) {
-                t.kind = TokenKind::Bad;
-                t.reason = "string without closing quote";
+                bad(t, "string without closing quote", base::Code::Syntax);
                 return;
             }
         } else if (*p_ == '"') {
@@ -278,17 +295,6 @@ void Lexer::lex_escape(Token& t) {
     ++p_;
 }
 
-// 0377 ends the stream wherever it stands (ri.md 2.6).
-void Lexer::lex_binary(Token& t) {
-    if (static_cast<unsigned char>(*p_) == 0xff) {
-        t.kind = TokenKind::End;
-        return;
-    }
-    t.kind = TokenKind::Bad;
-    t.reason = "binary token, which this reader does not know";
-    t.text = *p_++;
-}
-
 void Lexer::advance() {
     if (ahead_.empty()) {
         lex(token_);
@@ -306,16 +312,20 @@ const Token& Lexer::ahead(std::size_t i) {
 }
 
 bool Lexer::array_holds_strings() {
-    return skip_white() && *p_ == '"';
+    if (floats_left_ >= 0 || !skip_to_token() || definition_.kind == TokenKind::Bad) {
+        return false;
+    }
+    return *p_ == '"' || is_binary_string(*p_);
 }
 
-// The tight loop: plain numbers, blanks and line ends straight from the block. Everything else, and
-// what a block boundary may cut, goes through lex(). store(value, text): text is the number as
-// written, with a delimiter behind it.
+// The tight loop: plain numbers, blanks, line ends and short binary numbers straight from the
+// block. Everything else, and what a block boundary may cut, goes through lex(). store(value, text,
+// at): text is the number as written, with a delimiter behind it, null if binary; at is its place
+// in the block, null if it is the current token's.
 template <class Store> bool Lexer::read_numbers(Store store) {
     for (;;) {
         const char* p = p_;
-        while (p < end_) {
+        while (p < end_ && floats_left_ < 0) {
             const CharClass c = class_of(*p);
             if (c == White) {
                 ++p;
@@ -323,13 +333,21 @@ template <class Store> bool Lexer::read_numbers(Store store) {
                 p_ = p;
                 newline();
                 p = p_;
+            } else if (c == High) {
+                const BinaryNumber n = binary_number(p, end_);
+                if (!n.end) {
+                    break;
+                }
+                is_binary_ = true;
+                store(n.value, nullptr, p);
+                p = n.end;
             } else {
                 const PlainNumber n = scan_plain(p);
                 // At the end of the block the number may go on in the next one.
                 if (!n.end || n.end >= end_ || class_of(*n.end) == Regular) {
                     break;
                 }
-                store(n.value, p);
+                store(n.value, p, p);
                 p = n.end;
             }
         }
@@ -338,30 +356,48 @@ template <class Store> bool Lexer::read_numbers(Store store) {
         if (token_.kind != TokenKind::Number) {
             return token_.kind == TokenKind::ArrayEnd;
         }
-        store(token_.number, token_.text.c_str());
+        store(token_.number, token_.text.empty() ? nullptr : token_.text.c_str(), nullptr);
     }
 }
 
+namespace {
+
+float nearest_float(double value, const char* text) {
+    return rounds_once(value) ? static_cast<float>(value)
+           : text             ? to_float(scan_decimal(text))
+                              : narrow(value);
+}
+
+} // namespace
+
 bool Lexer::read_floats(std::vector<float>& out) {
-    return read_numbers([&](double value, const char* text) {
-        out.push_back(rounds_once(value) ? static_cast<float>(value)
-                                         : to_float(scan_decimal(text)));
+    if (floats_left_ >= 0) {
+        return read_floats_of_array(out);
+    }
+    return read_numbers([&](double value, const char* text, const char*) {
+        out.push_back(nearest_float(value, text));
+    });
+}
+
+bool Lexer::read_both(std::vector<float>& floats, std::vector<double>& doubles) {
+    return read_numbers([&](double value, const char* text, const char*) {
+        floats.push_back(nearest_float(value, text));
+        doubles.push_back(value);
     });
 }
 
 bool Lexer::read_doubles(std::vector<double>& out) {
-    return read_numbers([&](double value, const char*) { out.push_back(value); });
+    return read_numbers([&](double value, const char*, const char*) { out.push_back(value); });
 }
 
 bool Lexer::read_ints(std::vector<std::int32_t>& out, IntTrouble& trouble) {
-    return read_numbers([&](double value, const char* text) {
+    return read_numbers([&](double value, const char*, const char* at) {
         bool inexact = false, overflow = false;
         out.push_back(to_int(value, inexact, overflow));
         if (!inexact && !overflow) {
             return;
         }
-        const bool in_block = text >= buffer_.data() && text < end_;
-        const base::SourcePos pos = in_block ? place(text) : token_.pos;
+        const base::SourcePos pos = at ? place(at) : token_.pos;
         if (inexact && trouble.inexact.line == 0) {
             trouble.inexact = pos;
         }
@@ -382,15 +418,26 @@ bool Lexer::read_strings(std::vector<std::string>& out) {
 }
 
 void Lexer::start_recording() {
-    recorded_.clear();
+    recorded_ = {};
+    recorded_.start = token_.pos;
+    recorded_.start_byte = offset(token_begin_);
     recording_ = true;
     record_from_ = token_begin_;
 }
 
-std::string Lexer::stop_recording() {
+Recording Lexer::stop_recording() {
     recording_ = false;
-    recorded_.append(record_from_, token_begin_);
+    recorded_.text.append(record_from_, token_begin_);
     return std::move(recorded_);
+}
+
+const std::string& Lexer::read_error() const {
+    static const std::string none;
+    return at_end_ ? source_->error() : none;
+}
+
+Lexer::NotFinite Lexer::take_not_finite() {
+    return std::exchange(not_finite_, {});
 }
 
 } // namespace rib

@@ -147,16 +147,17 @@ TEST(Lexer, MixedArrayStopsAtTheStranger) {
 
 TEST(Lexer, CommentsAreHandedOn) {
     std::vector<std::string> seen;
-    const Lexer::CommentHandler handler = [&](std::string_view kind, std::string_view text) {
-        seen.push_back(std::string(kind) + "|" + std::string(text));
+    const Lexer::CommentHandler handler = [&](const rib::Comment& c) {
+        seen.push_back(std::string(c.kind) + "|" + std::string(c.text) +
+                       (c.trailing ? "|trailing" : ""));
     };
     Lexer lexer(std::make_unique<Trickle>("##RenderMan RIB-Structure 1.1\nA # note\r\"#\"", 3),
                 {1, 1, 1}, &handler);
     for (int i = 0; i < 3; ++i) {
         lexer.advance();
     }
-    EXPECT_EQ(seen,
-              (std::vector<std::string>{"structure|RenderMan RIB-Structure 1.1", "comment| note"}));
+    EXPECT_EQ(seen, (std::vector<std::string>{"structure|RenderMan RIB-Structure 1.1",
+                                              "comment| note|trailing"}));
 }
 
 TEST(Lexer, LongRunsAreCutNotKept) {
@@ -175,7 +176,7 @@ TEST(Lexer, RecordsText) {
     while (lexer.token().text != "End") {
         lexer.advance();
     }
-    EXPECT_EQ(lexer.stop_recording(), "A 1 \"x\" [2] B 3 ");
+    EXPECT_EQ(lexer.stop_recording().text, "A 1 \"x\" [2] B 3 ");
 }
 
 } // namespace

@@ -45,9 +45,16 @@ void Parser::parse_params(Request& request, const RequestRow& table_row) {
             skip_value();
             continue;
         }
-        param.name = std::move(resolved.name);
         param.decl = resolved.decl;
         param.guessed = resolved.status == Resolved::Status::Guess;
+        if (mode_ == ParseMode::Keep) {
+            param.name = name;
+            if (keep_value(param)) {
+                request.params.params.push_back(std::move(param));
+            }
+            continue;
+        }
+        param.name = std::move(resolved.name);
         if (!read_value(param, param.guessed) || !check_value(param, table_row)) {
             continue;
         }
@@ -71,8 +78,9 @@ Parser::Resolved Parser::resolve(std::string_view name, base::SourcePos pos, con
         return resolve_inline(name, pos);
     }
     const Dictionary::Entry* entry = dictionary_.find(name);
+    const bool keep = mode_ == ParseMode::Keep;
     if (entry && entry->illegal) {
-        return {Skip, {}, {}};
+        return {keep ? Guess : Skip, {}, {}};
     }
     const bool has_options = table_row.params == ParamUse::Option ||
                              table_row.params == ParamUse::Attribute ||
@@ -86,7 +94,7 @@ Parser::Resolved Parser::resolve(std::string_view name, base::SourcePos pos, con
     if (entry) {
         return {Known, entry->decl, std::string(name)};
     }
-    if (table_row.params != ParamUse::Primvars) {
+    if (keep || table_row.params != ParamUse::Primvars) {
         return {Guess, {}, std::string(name)};
     }
     if (!name.starts_with("__")) { // those are notes of later systems to themselves
@@ -99,12 +107,13 @@ Parser::Resolved Parser::resolve(std::string_view name, base::SourcePos pos, con
 
 Parser::Resolved Parser::resolve_inline(std::string_view text, base::SourcePos pos) {
     Declaration d = parse_inline_declaration(text);
+    const bool keep = mode_ == ParseMode::Keep;
     if (!d.error.empty()) {
         diag_.report_once("declaration:" + std::string(text), base::Severity::Error,
                           base::Code::Syntax, pos,
                           std::string(request_name_) + ": declaration " + quote(text) + ": " +
-                              d.error + "; its values are skipped");
-        return {Resolved::Status::Skip, {}, {}};
+                              d.error + (keep ? "" : "; its values are skipped"));
+        return {keep ? Resolved::Status::Guess : Resolved::Status::Skip, {}, {}};
     }
     if (d.is_reference) {
         d.decl.type = ParamType::String;
@@ -116,7 +125,6 @@ Parser::Resolved Parser::resolve_inline(std::string_view text, base::SourcePos p
 // parameter is dropped.
 bool Parser::read_value(Param& param, bool guess) {
     arg_name_ = param.name;
-    const std::string head = std::string(request_name_) + ": parameter " + quote(param.name);
     switch (token().kind) {
     case TokenKind::ArrayBegin:
         return read_array_value(param, guess);
@@ -124,10 +132,15 @@ bool Parser::read_value(Param& param, bool guess) {
     case TokenKind::String:
         return read_bare_value(param, guess);
     default:
-        error(base::Severity::Error, base::Code::MissingData, token().pos,
-              head + " has no value: got " + describe(token()) + "; parameter dropped");
+        missing_value(param);
         return false;
     }
+}
+
+void Parser::missing_value(const Param& param) {
+    error(base::Severity::Error, base::Code::MissingData, token().pos,
+          std::string(request_name_) + ": parameter " + quote(param.name) + " has no value: got " +
+              describe(token()) + "; parameter dropped");
 }
 
 bool Parser::read_array_value(Param& param, bool guess) {

@@ -81,14 +81,18 @@ std::string describe(const Token& token) {
 }
 
 Parser::Parser(Lexer& lexer, base::Diag& diag, const Dictionary& dictionary,
-               const ColorModel& colors)
-    : lexer_(lexer), diag_(diag), dictionary_(dictionary), colors_(colors) {}
+               const ColorModel& colors, ParseMode mode)
+    : lexer_(lexer), diag_(diag), dictionary_(dictionary), colors_(colors), mode_(mode) {}
 
 void Parser::error(base::Severity severity, base::Code code, base::SourcePos pos,
                    const std::string& text) {
-    if (++num_errors_ <= max_shown_errors) {
-        diag_.report(severity, code, pos, text);
-    } else if (num_errors_ == max_shown_errors + 1) {
+    if (token().kind != TokenKind::Name && !lexer_.read_error().empty()) {
+        return; // the stream broke off: that is one message, not several
+    }
+    if (num_errors_ < max_shown_errors) {
+        num_errors_ +=
+            diag_.report_few(base::kind_of(text), base::max_alike, severity, code, pos, text);
+    } else if (num_errors_++ == max_shown_errors) {
         diag_.report(base::Severity::Error, base::Code::Limit, pos,
                      "too many errors in this stream: further ones of its syntax are not shown");
     }
@@ -100,7 +104,7 @@ Parser::Outcome Parser::expected(std::string_view what) {
     if (!arg_name_.empty()) {
         text += " for '" + std::string(arg_name_) + "'";
     }
-    error(base::Severity::Error, base::Code::Syntax, token().pos,
+    error(base::Severity::Error, syntax_code(), token().pos,
           text + ", got " + describe(token()) + "; request skipped");
     return Outcome::Skip;
 }
@@ -118,7 +122,7 @@ bool Parser::next_name() {
         token_used_ = false;
     }
     if (token().kind != TokenKind::Name && token().kind != TokenKind::End) {
-        error(base::Severity::Error, base::Code::Syntax, token().pos,
+        error(base::Severity::Error, syntax_code(), token().pos,
               "expected a request name, got " + describe(token()) +
                   "; skipped to the next request");
         skip_to_name();
@@ -129,35 +133,49 @@ bool Parser::next_name() {
 bool Parser::next(Request& request) {
     while (next_name()) {
         const RequestId* id = find_request(token().text);
-        const base::SourcePos pos = token().pos;
-        if (!id) {
-            const std::string_view hint = similar_request(token().text);
-            error(base::Severity::Error, base::Code::BadToken, pos,
-                  "unknown request " + quote(token().text) + "; skipped" +
-                      (hint.empty() ? "" : " (did you mean " + std::string(hint) + "?)"));
-            lexer_.advance();
-            skip_to_name();
-            continue;
-        }
-        const RequestRow& table_row = row(*id);
-        if (table_row.kind == RequestKind::Skipped) {
-            diag_.report_once("skipped:" + std::string(table_row.name), base::Severity::Warning,
-                              base::Code::Unimplement, pos,
-                              std::string(table_row.name) + ": outside RI 3.2 (" +
-                                  std::string(table_row.note) + "); ignored");
-            lexer_.advance();
-            skip_to_name();
-            continue;
-        }
         request.clear();
-        request.id = *id;
-        request.pos = pos;
-        if (parse(request, table_row) == Outcome::Ok) {
+        request.id = id ? *id : RequestId::Unknown;
+        request.pos = token().pos;
+        const bool is_known = id && row(*id).kind != RequestKind::Skipped;
+        const Outcome outcome = is_known                   ? parse(request, row(*id))
+                                : mode_ == ParseMode::Keep ? keep_loose(request)
+                                                           : skip_request(id);
+        note_not_finite();
+        if (outcome == Outcome::Ok) {
             return true;
         }
         skip_to_name();
     }
     return false;
+}
+
+// The current token names a request that the table lacks or lists as outside RI 3.2.
+Parser::Outcome Parser::skip_request(const RequestId* id) {
+    if (id) {
+        const RequestRow& table_row = row(*id);
+        diag_.report_once("skipped:" + std::string(table_row.name), base::Severity::Warning,
+                          base::Code::Unimplement, token().pos,
+                          std::string(table_row.name) + ": outside RI 3.2 (" +
+                              std::string(table_row.note) + "); ignored");
+    } else {
+        const std::string_view hint = similar_request(token().text);
+        error(base::Severity::Error, base::Code::BadToken, token().pos,
+              "unknown request " + quote(token().text) + "; skipped" +
+                  (hint.empty() ? "" : " (did you mean " + std::string(hint) + "?)"));
+    }
+    lexer_.advance();
+    return Outcome::Skip;
+}
+
+// Tells of NaN and infinities in the request just read.
+void Parser::note_not_finite() {
+    const Lexer::NotFinite found = lexer_.take_not_finite();
+    if (found.count > 0) {
+        error(base::Severity::Error, base::Code::Range, found.pos,
+              std::string(request_name_) + ": " + std::to_string(found.count) +
+                  (found.count > 1 ? " numbers that are" : " number that is") +
+                  " not finite; NaN is read as 0, infinity as the largest number");
+    }
 }
 
 Parser::Outcome Parser::parse(Request& request, const RequestRow& table_row) {
@@ -184,6 +202,7 @@ Parser::Outcome Parser::finish(const RequestRow& table_row, bool taken_anyway) {
         return Outcome::Ok;
     }
     const base::SourcePos pos = token().pos;
+    const base::Code code = syntax_code();
     std::string what = describe(token());
     std::size_t numbers = 0;
     for (; token().kind == TokenKind::Number; lexer_.advance()) {
@@ -198,7 +217,7 @@ Parser::Outcome Parser::finish(const RequestRow& table_row, bool taken_anyway) {
                                : table_row.arg_names.empty()
                                    ? "a request without arguments"
                                    : "its arguments (" + std::string(table_row.arg_names) + ")";
-    error(base::Severity::Error, base::Code::Syntax, pos,
+    error(base::Severity::Error, code, pos,
           std::string(table_row.name) + ": " + what + " after " + behind +
               (taken_anyway ? "; ignored" : "; request skipped"));
     skip_to_name();
@@ -286,6 +305,9 @@ std::size_t Parser::scalar_size(char code) const {
 
 // One scalar argument, or, from one bracket, as many of a run of them as it holds numbers for.
 Parser::Outcome Parser::scalars(std::string_view codes, std::span<Arg> run, std::size_t& used) {
+    if (mode_ == ParseMode::Keep && codes[0] == 'c') {
+        return color_samples(run[0]);
+    }
     if (token().kind == TokenKind::ArrayBegin) {
         return bracketed_scalars(codes, run, used);
     }
@@ -510,22 +532,25 @@ Parser::Outcome Parser::version(Arg& arg) {
     if (kind != TokenKind::Number && kind != TokenKind::Bad && kind != TokenKind::String) {
         return expected("a version number");
     }
+    const bool is_text = kind != TokenKind::Number;
     const Decimal d = scan_decimal(token().text.c_str());
-    if (!d.end) {
+    if (is_text && !d.end) {
         return expected("a version number");
     }
     arg.given = true;
-    arg.numbers = {to_double(d)};
+    arg.numbers = {is_text ? to_double(d) : token().number};
+    if (is_text) {
+        arg.strings = {token().text};
+    }
     lexer_.advance();
     return Outcome::Ok;
 }
 
-bool Parser::record_archive(base::SourcePos opened, std::string& text, base::SourcePos& start) {
+bool Parser::record_archive(base::SourcePos opened, Recording& recording) {
     if (token_used_) {
         lexer_.advance();
         token_used_ = false;
     }
-    start = token().pos;
     lexer_.start_recording();
     for (int depth = 1;;) {
         if (token().kind == TokenKind::End) {
@@ -539,7 +564,7 @@ bool Parser::record_archive(base::SourcePos opened, std::string& text, base::Sou
         }
         lexer_.advance();
     }
-    text = lexer_.stop_recording();
+    recording = lexer_.stop_recording();
     if (token().kind == TokenKind::End) {
         error(base::Severity::Error, base::Code::Nesting, opened,
               "ArchiveBegin without ArchiveEnd before the end of the file; archive dropped");

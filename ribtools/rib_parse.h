@@ -5,6 +5,9 @@
 // reported with its place, what was expected and what was done, and reading resumes at the next
 // request name (ri.md 2.4). The dictionary and the color model are read when a value is met, so a
 // Declare takes effect on the next request, as the standard demands.
+//
+// ParseMode::Keep is for programs that hand requests on instead of carrying them out: nothing is
+// interpreted beyond what finding the ends of values needs (see the enum).
 #pragma once
 
 #include "ribtools/declare.h"
@@ -31,23 +34,34 @@ struct ColorModel {
     template <class T> [[nodiscard]] std::vector<T> to_rgb(const std::vector<T>& samples) const;
 };
 
+enum class ParseMode : std::uint8_t {
+    // Parameters are resolved and judged, colors become RGB, requests outside RI 3.2 are left out.
+    Resolve,
+    // Requests as they are written: a parameter's name is its token with the declaration in it, and
+    // all parameters are kept; colors have as many samples as are there; requests outside the table
+    // are kept (Request::values). Numbers of undeclared parameters are integers if all of them are.
+    Keep
+};
+
 class Parser {
 public:
-    Parser(Lexer& lexer, base::Diag& diag, const Dictionary& dictionary, const ColorModel& colors);
+    Parser(Lexer& lexer, base::Diag& diag, const Dictionary& dictionary, const ColorModel& colors,
+           ParseMode mode = ParseMode::Resolve);
 
     // The next request; false at the end of the stream. Requests without arguments and parameters
     // are handed on before the token behind them is read, so that WorldEnd on a pipe renders at
     // once.
     bool next(Request& request);
 
-    // Text of an inline archive: from here to the matching ArchiveEnd, which is consumed. *start is
-    // the place of its first token. False (reported at `opened`): the stream ended first.
-    bool record_archive(base::SourcePos opened, std::string& text, base::SourcePos& start);
+    // An inline archive: from here to the matching ArchiveEnd, which is consumed. False (reported
+    // at `opened`): the stream ended first.
+    bool record_archive(base::SourcePos opened, Recording& recording);
 
 private:
     enum class Outcome : std::uint8_t { Ok, Skip };
 
     bool next_name();
+    Outcome skip_request(const RequestId* id);
     Outcome parse(Request& request, const RequestRow& row);
     Outcome parse_args(Request& request, const RequestRow& row);
     Outcome parse_arg(char code, bool optional, Arg& arg);
@@ -68,6 +82,13 @@ private:
     [[nodiscard]] bool starts(char code) const;
     [[nodiscard]] std::size_t scalar_size(char code) const;
 
+    // What only ParseMode::Keep does, rib_keep.cpp.
+    Outcome keep_loose(Request& request);
+    Outcome loose_value(LooseValue& value);
+    Outcome color_samples(Arg& arg);
+    bool keep_value(Param& param);
+    void missing_value(const Param& param);
+
     // Parameter lists, rib_params.cpp.
     struct Resolved;
     void parse_params(Request& request, const RequestRow& row);
@@ -77,6 +98,7 @@ private:
     bool read_value(Param& param, bool guess);
     bool read_array_value(Param& param, bool guess);
     bool read_bare_value(Param& param, bool guess);
+    void note_not_finite();
     void note_int_trouble(const Lexer::IntTrouble& trouble, std::string_view what);
     bool check_value(Param& param, const RequestRow& row);
     void skip_value();
@@ -87,11 +109,15 @@ private:
     void error(base::Severity severity, base::Code code, base::SourcePos pos,
                const std::string& text);
     [[nodiscard]] const Token& token() const { return lexer_.token(); }
+    [[nodiscard]] base::Code syntax_code() const {
+        return token().kind == TokenKind::Bad ? token().code : base::Code::Syntax;
+    }
 
     Lexer& lexer_;
     base::Diag& diag_;
     const Dictionary& dictionary_;
     const ColorModel& colors_;
+    const ParseMode mode_;
     bool token_used_ = true; // the current token belongs to the request handed out last
     std::string_view request_name_, arg_name_;
     std::uint64_t num_errors_ = 0;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ribtools/rib_source.h"
 
+#include "ribtools/rib_gzip.h"
+
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
@@ -75,11 +77,11 @@ OpenResult open_file(const std::string& path) {
     if (::fstat(fd, &info) == 0 && S_ISDIR(info.st_mode)) {
         return {nullptr, std::strerror(EISDIR)};
     }
-    return {std::move(source), {}};
+    return {open_gzip(std::move(source)), {}};
 }
 
 std::unique_ptr<ByteSource> open_stdin() {
-    return std::make_unique<FileSource>(STDIN_FILENO, false);
+    return open_gzip(std::make_unique<FileSource>(STDIN_FILENO, false));
 }
 
 std::unique_ptr<ByteSource> open_memory(std::shared_ptr<const std::string> text) {

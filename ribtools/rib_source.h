@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where the bytes of a RIB stream come from: a file, standard input, memory. Read block by block,
-// so that no stream is ever held whole. Compressed streams will be one more source, chosen in
-// open_file() by their first bytes.
+// so that no stream is ever held whole. Files and standard input may be gzip-compressed, see
+// rib_gzip.h.
 #pragma once
 
 #include <cstddef>
@@ -19,6 +19,8 @@ public:
     [[nodiscard]] virtual std::size_t size_hint() const { return ~std::size_t{0}; }
     // Empty unless a read failed.
     [[nodiscard]] virtual const std::string& error() const = 0;
+    // After a failure: the data is at fault, not the environment.
+    [[nodiscard]] virtual bool is_damaged() const { return false; }
 };
 
 struct OpenResult {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ribtools/search_path.h"
 
+#include <algorithm>
 #include <cstdlib>
 
 namespace rib {
@@ -80,6 +81,33 @@ std::vector<std::string> expand_search_path(std::string_view value,
 
 bool bypasses_search_path(std::string_view name) {
     return name.starts_with("/") || name.starts_with("./") || name.starts_with("../");
+}
+
+std::vector<std::string> archive_candidates(const std::string& name,
+                                            const std::vector<std::string>& directories,
+                                            const std::vector<std::string>& readers) {
+    std::vector<std::string> result;
+    const auto add = [&](std::string path) {
+        if (path.starts_with("./")) {
+            path.erase(0, 2);
+        }
+        if (std::find(result.begin(), result.end(), path) == result.end()) {
+            result.push_back(std::move(path));
+        }
+    };
+    if (!bypasses_search_path(name)) {
+        for (const std::string& directory : directories) {
+            add(directory + "/" + name);
+        }
+    }
+    add(name);
+    for (const std::string& path : readers) {
+        const std::size_t slash = path.rfind('/');
+        if (slash != std::string::npos && !name.starts_with("/")) {
+            add(path.substr(0, slash + 1) + name);
+        }
+    }
+    return result;
 }
 
 } // namespace rib

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Search path values (ri.md 14.1): lists of directories with &, @, ~ and environment variables.
+// Search path values (ri.md 14.1): lists of directories with &, @, ~ and environment variables; and
+// where an archive may lie.
 #pragma once
 
 #include <string>
@@ -16,5 +17,11 @@ namespace rib {
 
 // Names that start with "/", "./" or "../" bypass the search path.
 [[nodiscard]] bool bypasses_search_path(std::string_view name);
+
+// The paths to try for ReadArchive (ri.md 6.12): in the directories, then as given, then beside the
+// files that are being read, innermost first.
+[[nodiscard]] std::vector<std::string>
+archive_candidates(const std::string& name, const std::vector<std::string>& directories,
+                   const std::vector<std::string>& readers);
 
 } // namespace rib

@@ -93,7 +93,8 @@ bool State::stopped() const {
 void State::report(base::Severity severity, base::Code code, const Request& request,
                    const std::string& text) {
     if (!replaying_) {
-        diag_.report(severity, code, request.pos, std::string(row(request.id).name) + ": " + text);
+        const std::string whole = std::string(row(request.id).name) + ": " + text;
+        diag_.report_few(base::kind_of(whole), base::max_alike, severity, code, request.pos, whole);
     }
 }
 

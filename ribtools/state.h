@@ -46,8 +46,8 @@ public:
     // Checks that the request is legal here and carries it out. Takes what it can from the request.
     void execute(Request& request);
     // The stream has ended: blocks opened in it are closed with a message, an unfinished world is
-    // dropped.
-    void close_blocks(base::SourcePos end, std::size_t keep);
+    // dropped. tell: false where a message about the end itself has said enough.
+    void close_blocks(base::SourcePos end, std::size_t keep, bool tell);
     [[nodiscard]] std::size_t depth() const { return blocks_.depth(); }
     // The backend returned false or the error handler asks to end the run.
     [[nodiscard]] bool stopped() const;

@@ -77,8 +77,8 @@ bool State::close(BlockKind kind, const Request& request) {
         const Blocks::Block block = blocks_.top();
         diag_.report(base::Severity::Error, base::Code::Nesting, request.pos,
                      std::string(row(request.id).name) + ": the " +
-                         std::string(block_name(block.kind)) + "Begin of line " +
-                         std::to_string(block.pos.line) + " is still open; closed here");
+                         std::string(block_name(block.kind)) + "Begin of " +
+                         base::place_name(block.pos) + " is still open; closed here");
         if (block.kind == BlockKind::Object) {
             finish_object();
         }
@@ -87,17 +87,17 @@ bool State::close(BlockKind kind, const Request& request) {
     return true;
 }
 
-void State::close_blocks(base::SourcePos end, std::size_t keep) {
-    constexpr std::size_t max_told = 20;
+void State::close_blocks(base::SourcePos end, std::size_t keep, bool tell) {
+    const std::size_t max_told = tell ? 20 : 0;
     const std::size_t num_open = blocks_.depth() - std::min(keep, blocks_.depth());
     refused_blocks_ = 0;
     for (std::size_t i = 0; i < num_open; ++i) {
         const Blocks::Block block = blocks_.top();
-        if (i < max_told || block.kind == BlockKind::World) {
+        if (i < max_told || (tell && block.kind == BlockKind::World)) {
             diag_.report(
                 base::Severity::Error, base::Code::Nesting, end,
-                "end of input inside the " + std::string(block_name(block.kind)) +
-                    "Begin of line " + std::to_string(block.pos.line) +
+                "end of input inside the " + std::string(block_name(block.kind)) + "Begin of " +
+                    base::place_name(block.pos) +
                     (block.kind == BlockKind::World ? "; the world is not rendered" : "; closed"));
         }
         if (block.kind == BlockKind::Object) {
@@ -105,7 +105,7 @@ void State::close_blocks(base::SourcePos end, std::size_t keep) {
         }
         restore(block.kind);
     }
-    if (num_open > max_told) {
+    if (tell && num_open > max_told) {
         diag_.report(base::Severity::Error, base::Code::Nesting, end,
                      "end of input: " + std::to_string(num_open) + " blocks were open");
     }

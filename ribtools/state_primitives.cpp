@@ -299,7 +299,7 @@ void State::do_Procedural(Request& request) {
         const std::size_t depth = blocks_.depth();
         open(BlockKind::Attribute, begin);
         host_.read_archive(p.args[0], request.pos);
-        close_blocks(request.pos, depth + 1);
+        close_blocks(request.pos, depth + 1, true);
         if (blocks_.depth() > depth) {
             restore(BlockKind::Attribute);
         }

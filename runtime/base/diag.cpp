@@ -11,10 +11,12 @@ constexpr std::size_t max_log = 10'000;
 constexpr std::size_t max_places = 8;
 constexpr std::size_t no_record = ~std::size_t{0};
 
-// "file:line:col", as far as known.
+// "file:line:col" or "file:byte offset", as far as known.
 std::string place_text(const std::string& file, SourcePos pos) {
     std::string place = file;
-    if (!file.empty() && pos.line > 0) {
+    if (!file.empty() && pos.is_byte()) {
+        place += ":" + place_name(pos);
+    } else if (!file.empty() && pos.line > 0) {
         place += ":" + std::to_string(pos.line);
         place += pos.col > 0 ? ":" + std::to_string(pos.col) : "";
     }
@@ -34,6 +36,22 @@ std::string_view severity_name(Severity severity) {
         return "severe";
     }
     return "";
+}
+
+std::string place_name(SourcePos pos) {
+    return pos.is_byte() ? "byte " + std::to_string(pos.byte())
+                         : "line " + std::to_string(pos.line);
+}
+
+std::string kind_of(std::string_view text) {
+    std::string kind;
+    for (const char c : text) {
+        const bool digit = (c >= '0' && c <= '9') || c == '.' || c == '-';
+        if (!digit || !kind.ends_with('#')) {
+            kind += digit ? '#' : c;
+        }
+    }
+    return kind;
 }
 
 std::string_view code_name(Code code) {
@@ -82,7 +100,48 @@ void Diag::report_once(std::string_view key, Severity severity, Code code, Sourc
     }
 }
 
+bool Diag::report_few(std::string_view key, std::uint64_t most, Severity severity, Code code,
+                      SourcePos pos, std::string_view text) {
+    const std::string file = file_name(pos.file_id);
+    const std::string place = place_text(file, pos);
+    const std::lock_guard lock(mutex_);
+    record(severity, code, place, text);
+    auto it = repeated_index_.find(std::string(key));
+    if (it == repeated_index_.end()) {
+        if (repeated_.size() >= max_log) {
+            say(severity, code, place, text);
+            return true;
+        }
+        it = repeated_index_.emplace(key, repeated_.size()).first;
+        repeated_.push_back({severity, file, std::string(text), 0, 0});
+    }
+    Repeated& repeated = repeated_[it->second];
+    if (repeated.num_said < most) {
+        ++repeated.num_said;
+        say(severity, code, place, text);
+        return true;
+    }
+    ++repeated.num_quiet;
+    note(severity, code);
+    return false;
+}
+
+void Diag::tell_repeated() {
+    const std::lock_guard lock(mutex_);
+    for (Repeated& r : repeated_) {
+        if (r.num_quiet > 0) {
+            print(r.severity, r.file, std::to_string(r.num_quiet) + " more like this: " + r.text);
+            r.num_quiet = 0;
+        }
+    }
+}
+
 void Diag::say(Severity severity, Code code, const std::string& place, std::string_view text) {
+    note(severity, code);
+    print(severity, place, text);
+}
+
+void Diag::note(Severity severity, Code code) {
     ++counts_[static_cast<int>(severity)];
     if (code != Code::None) {
         last_ = code;
@@ -90,6 +149,9 @@ void Diag::say(Severity severity, Code code, const std::string& place, std::stri
     if (handler_ == ErrorHandler::Abort && severity >= Severity::Error) {
         abort_ = true;
     }
+}
+
+void Diag::print(Severity severity, const std::string& place, std::string_view text) {
     if (handler_ == ErrorHandler::Ignore || severity < threshold_) {
         return;
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages about user input and the environment: file:line:col: severity: text.
+// Messages about user input and the environment: file:line:col: severity: text, for binary input
+// file:byte offset: severity: text.
 // One Diag per run, passed down; it is the only writer to standard error and is safe from any
 // thread. Severities and codes are those of the RenderMan Interface (ri.md, section 13).
 #pragma once
@@ -23,11 +24,23 @@ enum class Code : std::uint8_t {
 #undef DIAG_CODE
 };
 
-// A place in user input. file_id indexes Diag's table of file names; 0 means "no place".
+// A place in user input. file_id indexes Diag's table of file names; 0 means "no place". In binary
+// data, which has no lines, it is a byte offset, kept in the bits of line and column.
 struct SourcePos {
     std::uint32_t file_id = 0;
     std::uint32_t line = 0; // from 1
     std::uint32_t col = 0;  // from 1, bytes
+
+    static constexpr std::uint32_t byte_mark = 1u << 31;
+    [[nodiscard]] static SourcePos at_byte(std::uint32_t file_id, std::uint64_t offset) {
+        return {file_id, byte_mark | static_cast<std::uint32_t>(offset >> 32),
+                static_cast<std::uint32_t>(offset)};
+    }
+    [[nodiscard]] bool is_byte() const { return (line & byte_mark) != 0; }
+    // From 0, as hex dumps count.
+    [[nodiscard]] std::uint64_t byte() const {
+        return static_cast<std::uint64_t>(line & ~byte_mark) << 32 | col;
+    }
     friend bool operator==(const SourcePos&, const SourcePos&) = default;
 };
 
@@ -60,6 +73,13 @@ public:
     void report_once(std::string_view key, Severity severity, Code code, SourcePos pos,
                      std::string_view text);
 
+    // The first few reports with this key are printed, the others counted; true: printed. Keys are
+    // for kinds of mistakes that a program makes throughout a file, see kind_of().
+    bool report_few(std::string_view key, std::uint64_t most, Severity severity, Code code,
+                    SourcePos pos, std::string_view text);
+    // Says how many more of each kind there were, once.
+    void tell_repeated();
+
     void set_handler(ErrorHandler handler);
     // True after an error arrived while the handler is Abort: the caller winds the run down.
     [[nodiscard]] bool abort_requested() const;
@@ -81,6 +101,14 @@ private:
     std::size_t record(Severity severity, Code code, const std::string& place,
                        std::string_view text);
     void say(Severity severity, Code code, const std::string& place, std::string_view text);
+    void note(Severity severity, Code code);
+    void print(Severity severity, const std::string& place, std::string_view text);
+
+    struct Repeated {
+        Severity severity;
+        std::string file, text; // of the first
+        std::uint64_t num_said, num_quiet;
+    };
 
     mutable std::mutex mutex_;
     std::FILE* out_;
@@ -93,8 +121,18 @@ private:
     std::vector<std::string> log_;
     std::vector<MessageRecord> records_;
     std::unordered_map<std::string, std::size_t> record_of_text_;
+    std::vector<Repeated> repeated_;
+    std::unordered_map<std::string, std::size_t> repeated_index_; // by key of report_few()
     std::unordered_map<std::string, std::size_t> seen_; // key of report_once(): its record
 };
+
+// "line 12" or "byte 345", for messages that refer to another place.
+[[nodiscard]] std::string place_name(SourcePos pos);
+
+// How many messages of one kind are worth printing.
+constexpr std::uint64_t max_alike = 10;
+// A message without its numbers: what kind of mistake it tells of.
+[[nodiscard]] std::string kind_of(std::string_view text);
 
 [[nodiscard]] std::string_view severity_name(Severity severity);
 [[nodiscard]] std::string_view code_name(Code code); // RIE_RANGE

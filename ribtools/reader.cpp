@@ -181,9 +181,9 @@ private:
             read_stream(lexer, path);
             return;
         }
-        diag_.report(base::Severity::Error, base::Code::NoFile, pos,
-                     "ReadArchive: " + printable(name) + ": not found (looked in " +
-                         std::to_string(candidates.size()) + " places); skipped");
+        diag_.report_few("no archive " + name, 1, base::Severity::Error, base::Code::NoFile, pos,
+                         "ReadArchive: " + printable(name) + ": not found (looked in " +
+                             std::to_string(candidates.size()) + " places); skipped");
     }
 
     std::vector<std::string> candidates_for(const std::string& name) const {

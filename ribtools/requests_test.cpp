@@ -2,154 +2,17 @@
 // Every row of the request table: a minimal legal form is read without a message, in its several
 // spellings; wrong ones are reported at their place and the next request is read.
 #include "ribtools/request.h"
+#include "ribtools/request_examples.h"
 #include "ribtools/test_util.h"
 
 #include <gtest/gtest.h>
 
 namespace {
 
+using rib_test::Example;
+using rib_test::examples;
 using rib_test::Reading;
 using rib_test::world;
-
-// One legal use of each request, with whatever it needs around it.
-struct Example {
-    const char* name;
-    const char* text;
-};
-constexpr Example examples[] = {
-    {"version", "version 3.03"},
-    {"Declare", "Declare \"x\" \"uniform float\""},
-    {"ErrorHandler", "ErrorHandler \"print\""},
-    {"ArchiveRecord", "ArchiveRecord \"comment\" \"text\""},
-    {"FrameBegin", "FrameBegin 1 FrameEnd"},
-    {"FrameEnd", "FrameBegin FrameEnd"},
-    {"WorldBegin", "WorldBegin WorldEnd"},
-    {"WorldEnd", "WorldBegin WorldEnd"},
-    {"AttributeBegin", "AttributeBegin AttributeEnd"},
-    {"AttributeEnd", "WorldBegin AttributeBegin AttributeEnd WorldEnd"},
-    {"TransformBegin", "TransformBegin TransformEnd"},
-    {"TransformEnd", "TransformBegin TransformEnd"},
-    {"SolidBegin", "WorldBegin SolidBegin \"primitive\" Sphere 1 -1 1 360 SolidEnd WorldEnd"},
-    {"SolidEnd", "WorldBegin SolidBegin \"union\" SolidEnd WorldEnd"},
-    {"ObjectBegin", "ObjectBegin 1 Sphere 1 -1 1 360 ObjectEnd"},
-    {"ObjectEnd", "ObjectBegin \"ball\" ObjectEnd"},
-    {"MotionBegin", "MotionBegin [0 1] Translate 0 0 1 Translate 0 0 2 MotionEnd"},
-    {"MotionEnd", "MotionBegin 0 1 Scale 1 1 1 Scale 2 2 2 MotionEnd"},
-    {"ResourceBegin", "ResourceBegin ResourceEnd"},
-    {"ResourceEnd", "ResourceBegin ResourceEnd"},
-    {"Format", "Format 200 150 -1"},
-    {"FrameAspectRatio", "FrameAspectRatio 1.5"},
-    {"ScreenWindow", "ScreenWindow [-1 1 -1 1]"},
-    {"CropWindow", "Cropwindow 0 .5 0 .5"},
-    {"Projection", "Projection \"perspective\" \"fov\" 45"},
-    {"Clipping", "Clipping 0.1 1e38"},
-    {"ClippingPlane", "ClippingPlane 0 0 3 0 0 1"},
-    {"DepthOfField", "DepthOfField - DepthOfField 22 45 1200 DepthOfField"},
-    {"Shutter", "Shutter 0 1"},
-    {"PixelVariance", "PixelVariance .01"},
-    {"PixelSamples", "PixelSamples 4 4"},
-    {"PixelFilter", "PixelFilter \"catmull-rom\" 4 4"},
-    {"Exposure", "Exposure 1 2.2"},
-    {"Imager", "Imager \"background\" \"color bgcolor\" [0 0 1]"},
-    {"Quantize", "Quantize \"rgba\" 255 0 255 0.5"},
-    {"Display",
-     "Display \"a.tif\" \"file\" \"rgba\" Display \"+b.tif\" \"file\" \"z\" \"origin\" [0 0]"},
-    {"DisplayChannel", "DisplayChannel \"varying color Ci\" \"quantize\" [0 255 0 255]"},
-    {"Hider", "Hider \"hidden\" \"jitter\" 0"},
-    {"ColorSamples", "ColorSamples [1 1 1] [.3 .6 .1] Color .5"},
-    {"RelativeDetail", "RelativeDetail 0.5"},
-    {"Option", "Option \"limits\" \"bucketsize\" [16 16] \"integer gridsize\" 256"},
-    {"Color", "Color [1 0 0] Color 1 0 0"},
-    {"Opacity", "Opacity .5 .5 .5"},
-    {"TextureCoordinates", "TextureCoordinates [0 0 1 0 0 1 1 1]"},
-    {"LightSource",
-     "LightSource \"distantlight\" 1 \"from\" [0 0 0] LightSource \"ambientlight\" \"amb\" "
-     "\"intensity\" .1 LightSource \"pointlight\" \"intensity\" 10"},
-    {"AreaLightSource",
-     "WorldBegin AreaLightSource \"arealight\" 3 Sphere 1 -1 1 360 AreaLightSource \"\" WorldEnd"},
-    {"Illuminate", "LightSource \"ambientlight\" 1 Illuminate \"1\" 0"},
-    {"Surface", "Surface \"plastic\" \"Ks\" .5 \"mine\" [1 2 3]"},
-    {"Displacement", "Displacement \"bumpy\" \"amplitude\" [.1]"},
-    {"Atmosphere", "Atmosphere \"fog\" \"distance\" 10"},
-    {"Interior", "Interior \"null\""},
-    {"Exterior", "Exterior \"\""},
-    {"ShadingRate", "ShadingRate .25"},
-    {"ShadingInterpolation", "ShadingInterpolation \"smooth\""},
-    {"Matte", "Matte 1"},
-    {"Bound", "Bound [-1 1 -1 1 -1 1]"},
-    {"Detail", "Detail -1 1 -1 1 2 3"},
-    {"DetailRange", "DetailRange 0 0 10 1e38"},
-    {"GeometricApproximation", "GeometricApproximation \"flatness\" .5"},
-    {"Orientation", "Orientation \"rh\""},
-    {"ReverseOrientation", "ReverseOrientation"},
-    {"Sides", "Sides [1] Sides 2.0"},
-    {"Basis", "Basis \"b-spline\" 1 [1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1] 4"},
-    {"TrimCurve", "TrimCurve [1] [2] [0 0 1 1] [0] [1] [2] [0 1] [0 1] [1 1] TrimCurve [] [] [] [] "
-                  "[] [] [] [] []"},
-    {"Attribute",
-     "Attribute \"light\" \"shadows\" \"on\" Attribute \"identifier\" \"name\" [\"ball\"]"},
-    {"Identity", "Identity"},
-    {"Transform", "Transform [1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1]"},
-    {"ConcatTransform", "ConcatTransform 1 0 0 0 0 1 0 0 0 0 1 0 0 0 2 1"},
-    {"Perspective", "Perspective 60"},
-    {"Translate", "Translate 1 2 3 Translate [1 2 3]"},
-    {"Rotate", "Rotate 90 0 0 1"},
-    {"Scale", "Scale 1 2 3"},
-    {"Skew", "Skew 45 0 1 0 1 0 0"},
-    {"CoordinateSystem", "CoordinateSystem \"here\""},
-    {"ScopedCoordinateSystem", "ScopedCoordinateSystem \"here\""},
-    {"CoordSysTransform", "CoordinateSystem \"here\" CoordSysTransform \"here\""},
-    {"Polygon", "WorldBegin Polygon \"P\" [0 0 0 1 0 0 0 1 0] WorldEnd"},
-    {"GeneralPolygon",
-     "WorldBegin GeneralPolygon [4 3] \"P\" [0 0 0 4 0 0 4 4 0 0 4 0 1 1 0 2 1 0 1 2 0] WorldEnd"},
-    {"PointsPolygons",
-     "WorldBegin PointsPolygons [3 3] [0 1 2 0 2 3] \"P\" [0 0 0 1 0 0 1 1 0 0 1 0] WorldEnd"},
-    {"PointsGeneralPolygons",
-     "WorldBegin PointsGeneralPolygons [1] [3] [0 1 2] \"P\" [0 0 0 1 0 0 1 1 0] WorldEnd"},
-    {"Patch", "WorldBegin Patch \"bilinear\" \"P\" [0 0 0 1 0 0 0 1 0 1 1 0] WorldEnd"},
-    {"PatchMesh",
-     "WorldBegin PatchMesh \"bilinear\" 2 \"nonperiodic\" 2 \"nowrap\" \"Pz\" [0 1 2 3] WorldEnd"},
-    {"NuPatch", "WorldBegin NuPatch 2 2 [0 0 1 1] 0 1 2 2 [0 0 1 1] 0 1 \"Pw\" [0 0 0 1 1 0 0 1 0 "
-                "1 0 1 1 1 0 1] WorldEnd"},
-    {"SubdivisionMesh",
-     "WorldBegin SubdivisionMesh \"catmull-clark\" [3] [0 1 2] \"P\" [0 0 0 1 0 0 0 1 0]\n"
-     "SubdivisionMesh \"catmull-clark\" [3] [0 1 2] [\"interpolateboundary\"] [0 0] [] [] \"P\" "
-     "[0 0 0 1 0 0 0 1 0] WorldEnd"},
-    {"HierarchicalSubdivisionMesh",
-     "WorldBegin HierarchicalSubdivisionMesh \"catmull-clark\" [3] [0 1 2] [] [] [] [] [] "
-     "\"P\" [0 0 0 1 0 0 0 1 0] WorldEnd"},
-    {"Sphere", "WorldBegin Sphere [1 -1 1 360] WorldEnd"},
-    {"Cone", "WorldBegin Cone 1 1 360 WorldEnd"},
-    {"Cylinder", "WorldBegin Cylinder 1 0 1 360 WorldEnd"},
-    {"Hyperboloid", "WorldBegin Hyperboloid 1 0 0 1 0 1 360 WorldEnd"},
-    {"Paraboloid", "WorldBegin Paraboloid 1 0 1 360 WorldEnd"},
-    {"Disk", "WorldBegin Disk 0 1 360 \"Cs\" [1 0 0 0 1 0 0 0 1 1 1 1] WorldEnd"},
-    {"Torus", "WorldBegin Torus 1 .2 0 360 360 WorldEnd"},
-    {"Points", "WorldBegin Points \"P\" [0 0 0 1 1 1] \"constantwidth\" .1 WorldEnd"},
-    {"Curves", "WorldBegin Curves \"linear\" [2] \"nonperiodic\" \"P\" [0 0 0 1 1 1] WorldEnd"},
-    {"Blobby", "WorldBegin Blobby 1 [1001 0] [1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1] [] "
-               "Blobby 1 [1001 0] [1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1] \"Cs\" [1 0 0] WorldEnd"},
-    {"Geometry", "WorldBegin Geometry \"teapot\" WorldEnd"},
-    {"Volume", "WorldBegin Volume \"box\" [-1 1 -1 1 -1 1] [0 0 0] WorldEnd"},
-    {"ObjectInstance",
-     "ObjectBegin 1 Sphere 1 -1 1 360 ObjectEnd WorldBegin ObjectInstance 1 WorldEnd"},
-    {"MakeTexture", "MakeTexture \"a.tif\" \"a.tx\" \"periodic\" \"clamp\" \"gaussian\" 2 2"},
-    {"MakeBump", "MakeBump \"a.tif\" \"a.tx\" \"periodic\" \"clamp\" \"gaussian\" 2 2"},
-    {"MakeLatLongEnvironment", "MakeLatLongEnvironment \"a.tif\" \"a.tx\" \"box\" 1 1"},
-    {"MakeCubeFaceEnvironment",
-     "MakeCubeFaceEnvironment \"1\" \"2\" \"3\" \"4\" \"5\" \"6\" \"a.tx\" 90 \"box\" 1 1"},
-    {"MakeShadow", "MakeShadow \"a.z\" \"a.shd\""},
-    {"MakeOcclusion", "MakeOcclusion [\"a.z\" \"b.z\"] \"a.shd\""},
-    {"MakeBrickMap", "MakeBrickMap [\"a.ptc\"] \"a.bkm\""},
-    {"ReadArchive", "ArchiveBegin \"a\" Color 1 0 0 ArchiveEnd ReadArchive \"a\""},
-    {"ArchiveBegin", "ArchiveBegin \"a\" ArchiveEnd"},
-    {"ArchiveEnd", "ArchiveBegin \"a\" Sphere 1 -1 1 360 ArchiveEnd"},
-    {"IfBegin", "IfBegin \"1\" IfEnd"},
-    {"ElseIf", "IfBegin \"0\" ElseIf \"1 == 1\" IfEnd"},
-    {"Else", "IfBegin \"0\" Else IfEnd"},
-    {"IfEnd", "IfBegin \"0\" Sphere 1 -1 1 360 IfEnd"},
-    {"Resource", "Resource \"here\" \"attributes\" \"string operation\" \"save\""},
-};
 // These say something even when used as intended.
 constexpr const char* noted[] = {
     "System",     "Deformation", "ShaderLayer", "ConnectShaderLayers", "GeometricRepresentation",

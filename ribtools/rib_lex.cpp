@@ -423,6 +423,10 @@ void Lexer::start_recording() {
     recorded_.start_byte = offset(token_begin_);
     recording_ = true;
     record_from_ = token_begin_;
+    if (token_.kind == TokenKind::Name && class_of(*token_begin_) == High) {
+        const std::uint32_t code = static_cast<unsigned char>(token_begin_[1]);
+        recorded_.codes.requests[code] = {token_.text, 0}; // it was read before this began
+    }
 }
 
 Recording Lexer::stop_recording() {

@@ -154,12 +154,16 @@ Accel::Accel(int num_threads, const View& view) : impl_(std::make_unique<Impl>()
 
 Accel::~Accel() = default;
 
-std::uint32_t Accel::add_prototype(std::span<const TraceItem> items) {
+std::uint32_t Accel::add_prototype(std::span<const TraceItem> items, const LevelView& seen) {
     embree::Level& level = impl_->prototypes.emplace_back();
     if (!impl_->device) {
         return 0;
     }
-    embree::build_level(impl_->device, impl_->view, items, level);
+    embree::build_level(impl_->device,
+                        {.view = impl_->view,
+                         .cam_from_trace = seen.cam_from_trace,
+                         .far_px_per_unit = seen.far_px_per_unit},
+                        items, level);
     rtcCommitScene(level.scene);
     return static_cast<std::uint32_t>(impl_->prototypes.size() - 1);
 }
@@ -191,7 +195,10 @@ void Accel::finish(std::span<const TraceItem> items) {
     if (!impl_->device) {
         return;
     }
-    embree::build_level(impl_->device, impl_->view, items, impl_->top);
+    const Mat4 identity;
+    embree::build_level(impl_->device,
+                        {.view = impl_->view, .cam_from_trace = std::span(&identity, 1)}, items,
+                        impl_->top);
     auto id = static_cast<unsigned>(impl_->top.geometries.size());
     for (const Impl::Placed& p : impl_->placed) {
         rtcAttachGeometryByID(impl_->top.scene, p.geometry, id++);
@@ -294,8 +301,12 @@ std::uint32_t Accel::occluded(const RayPacket& rays) const {
 }
 
 AccelStats Accel::stats() const {
-    AccelStats s{
-        impl_->top.triangles, impl_->top.analytic, impl_->top.grids, impl_->placed.size(), 0, 0};
+    AccelStats s;
+    s.triangles = impl_->top.triangles;
+    s.analytic = impl_->top.analytic;
+    s.grids = impl_->top.grids;
+    s.instances = impl_->placed.size();
+    s.flatness_px = impl_->top.flatness_px;
     s.embree_bytes =
         static_cast<std::uint64_t>(std::max<std::int64_t>(impl_->embree_bytes.load(), 0));
     s.bytes = s.embree_bytes + impl_->top.bytes();
@@ -304,6 +315,7 @@ AccelStats Accel::stats() const {
         s.analytic += level.analytic;
         s.grids += level.grids;
         s.bytes += level.bytes();
+        s.flatness_px = std::max(s.flatness_px, level.flatness_px);
     }
     return s;
 }

@@ -25,15 +25,20 @@ struct TraceItem {
     Mat4 object_from_trace;
     std::uint32_t mask = 0;  // RayMask
     int cull = 0;            // ObjectRay::cull
-    Mat4 parent_from_object; // parent: camera, or the object definition of a prototype
-    std::span<const Mat4> cam_from_parent; // every placement of the level
     float shading_rate = 1;
+};
+
+// How the camera sees a level: see DiceContext.
+struct LevelView {
+    std::vector<Mat4> cam_from_trace{Mat4()};
+    double far_px_per_unit = 0;
 };
 
 struct AccelStats {
     std::uint64_t triangles = 0, analytic = 0, grids = 0, instances = 0;
     std::uint64_t bytes = 0;
     std::uint64_t embree_bytes = 0; // of them
+    double flatness_px = 0; // what diced surfaces keep; more than asked for only to save memory
 };
 
 class Accel {
@@ -44,7 +49,7 @@ public:
     Accel& operator=(const Accel&) = delete;
 
     // A level that instances can show; its trace space is its own.
-    std::uint32_t add_prototype(std::span<const TraceItem> items);
+    std::uint32_t add_prototype(std::span<const TraceItem> items, const LevelView& seen);
     // instance: what Hit::instance will say.
     // False, and nothing added, when its scale is beyond what Embree can carry rays through.
     [[nodiscard]] bool add_instance(std::uint32_t prototype, std::uint32_t instance,

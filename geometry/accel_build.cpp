@@ -16,6 +16,8 @@ namespace {
 // small.
 constexpr std::size_t merge_below_parts = 4096;
 constexpr std::size_t group_parts = std::size_t(1) << 22;
+// Of all grids of a level: some 2 GB with Embree's tree.
+constexpr std::uint64_t max_level_vertices = 48'000'000;
 
 // Embree takes the shading order of the corners in trace space, where a mirroring transform turns
 // it over.
@@ -25,8 +27,26 @@ int trace_cull(const TraceItem& item) {
 
 class Builder {
 public:
-    Builder(RTCDevice device, const View& view, Level& level)
-        : device_(device), view_(view), level_(level) {}
+    Builder(RTCDevice device, const DiceContext& dice, Level& level)
+        : device_(device), dice_(dice), level_(level) {}
+
+    // Dicing at the flatness asked for, or as finely as memory allows: one flatness for all, so
+    // that borders meet.
+    void plan(std::span<const TraceItem> items) {
+        level_.flatness_px = dice_.flatness_px;
+        for (int attempt = 0; attempt < 8; ++attempt) {
+            std::uint64_t vertices = 0;
+            for (const TraceItem& item : items) {
+                vertices += item.surface->plan({item.trace_from_object, dice_});
+            }
+            if (vertices <= max_level_vertices) {
+                break;
+            }
+            // Twice the segments, a quarter of the error.
+            dice_.flatness_px *= 1.1 * double(vertices) / double(max_level_vertices);
+            level_.flatness_px = dice_.flatness_px;
+        }
+    }
 
     void add(const TraceItem& item) {
         switch (item.surface->trace_form()) {
@@ -55,7 +75,7 @@ private:
     using Key = std::tuple<TraceForm, std::uint32_t, int, bool>; // form, mask, culling, refine
 
     RTCDevice device_;
-    View view_;
+    DiceContext dice_;
     Level& level_;
     std::vector<unsigned> masks_; // by geomID
     std::map<Key, Geometry*> open_;
@@ -97,17 +117,8 @@ private:
             g = &new_geometry(form, item.mask, cull, refine);
         }
         g->buffer.may_borrow = !small;
-        std::vector<Mat4> cam_from_object;
-        if (form == TraceForm::Grids) { // dicing looks at the camera
-            for (const Mat4& cam_from_parent : item.cam_from_parent) {
-                cam_from_object.push_back(cam_from_parent * item.parent_from_object);
-            }
-        }
-        const TraceContext context{item.trace_from_object, cam_from_object, view_,
-                                   item.shading_rate};
-
         const std::size_t first = num_parts(*g);
-        item.surface->tessellate(context, g->buffer);
+        item.surface->tessellate({item.trace_from_object, dice_}, g->buffer);
         const std::size_t added = num_parts(*g) - first;
         (form == TraceForm::Grids ? level_.grids : level_.triangles) += added;
         if (small) {
@@ -181,13 +192,14 @@ std::uint64_t Level::bytes() const {
     return sum;
 }
 
-void build_level(RTCDevice device, const View& view, std::span<const TraceItem> items,
+void build_level(RTCDevice device, const DiceContext& dice, std::span<const TraceItem> items,
                  Level& level) {
     level.scene = rtcNewScene(device);
     // ROBUST: without it rays slip through between triangles (design.md, section 6).
     rtcSetSceneFlags(level.scene, RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(level.scene, RTC_BUILD_QUALITY_MEDIUM);
-    Builder builder(device, view, level);
+    Builder builder(device, dice, level);
+    builder.plan(items);
     for (const TraceItem& item : items) {
         builder.add(item);
     }

@@ -42,12 +42,13 @@ struct Level {
     std::deque<Geometry> geometries; // stable: Embree holds pointers
     std::deque<Mat4> matrices;
     std::uint64_t triangles = 0, analytic = 0, grids = 0;
+    double flatness_px = 0;
 
     [[nodiscard]] std::uint64_t bytes() const;
 };
 
 // Creates the scene's geometries (uncommitted, so that instances can be added).
-void build_level(RTCDevice device, const View& view, std::span<const TraceItem> items,
+void build_level(RTCDevice device, const DiceContext& dice, std::span<const TraceItem> items,
                  Level& level);
 
 // accel_callbacks.cpp

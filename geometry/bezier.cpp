@@ -238,6 +238,17 @@ std::optional<PatchLayout> PatchLayout::make(const rib::NuPatch& patch, std::str
     return PatchLayout{std::move(*u), std::move(*v)};
 }
 
+std::size_t PatchLayout::heap_bytes() const {
+    std::size_t sum = 0;
+    for (const SpanMap* map : {&u, &v}) {
+        sum += map->parts().capacity() * sizeof(SpanMap::Part);
+        for (const SpanMap::Part& p : map->parts()) {
+            sum += p.input.capacity() * sizeof(int) + p.weights.capacity() * sizeof(double);
+        }
+    }
+    return sum;
+}
+
 namespace {
 
 // Rounding differs between the two parts that share an edge; the later one takes over the earlier

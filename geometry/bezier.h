@@ -73,6 +73,7 @@ struct PatchLayout {
     [[nodiscard]] const SpanMap::Part& part_v(int part) const {
         return v.parts()[static_cast<std::size_t>(part) / u.parts().size()];
     }
+    [[nodiscard]] std::size_t heap_bytes() const;
     [[nodiscard]] std::size_t points_per_part() const {
         return static_cast<std::size_t>(u.degree() + 1) * static_cast<std::size_t>(v.degree() + 1);
     }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Patches and NURBS against closed forms and direct evaluation of their bases in double.
 #include "geometry/bezier.h"
-#include "geometry/dice.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -190,60 +189,6 @@ TEST(Bezier, BadCountsAreRefusedWithAReason) {
     EXPECT_FALSE(SpanMap::nurbs(2, 2, knots, 0, 1, reason));
     EXPECT_FALSE(SpanMap::nurbs(2, 40, knots, 0, 1, reason));
     EXPECT_FALSE(SpanMap::nurbs(4, 2, knots, 0, 1, reason));
-}
-
-// Distance of diced quads to the true surface, in pixels, stays under the bound.
-TEST(Dice, SilhouetteErrorStaysWithinTheBound) {
-    const geo::View view{.perspective = true, .pixels_per_unit_x = 500, .pixels_per_unit_y = 500};
-    auto net = random_net(16, 11);
-    for (int i = 0; i < 16; ++i) {
-        net[std::size_t(4 * i + 2)] += 5; // in front of the camera
-    }
-    const geo::DiceRates rates = geo::dice_rates(3, 3, net.data(), view, 0.1);
-    for (int j = 0; j < rates.v; ++j) {
-        for (int i = 0; i < rates.u; ++i) {
-            const auto at = [&](double a, double b) {
-                return geo::evaluate_part(3, 3, net.data(), (i + a) / rates.u, (j + b) / rates.v).P;
-            };
-            const V3d mid_u = (at(0, 0) + at(1, 0)) * 0.5, mid_v = (at(0, 0) + at(0, 1)) * 0.5;
-            EXPECT_LT(length(mid_u - at(0.5, 0)) * 500 / mid_u.z, 0.1);
-            EXPECT_LT(length(mid_v - at(0, 0.5)) * 500 / mid_v.z, 0.1);
-        }
-    }
-}
-
-TEST(Dice, BordersMeetWhateverTheDirectionAndTheOtherSide) {
-    const geo::View view{.perspective = true, .pixels_per_unit_x = 300, .pixels_per_unit_y = 300};
-    auto a = random_net(16, 21);
-    for (int i = 0; i < 16; ++i) {
-        a[std::size_t(4 * i + 2)] += 4;
-    }
-    // b continues a across u = 1 with its own u reversed and v reversed: its border u=1 is a's
-    // border u=1 backwards.
-    auto b = random_net(16, 22);
-    for (int j = 0; j < 4; ++j) {
-        for (int k = 0; k < 4; ++k) {
-            b[std::size_t(4 * (4 * j + 3) + k)] = a[std::size_t(4 * (4 * (3 - j) + 3) + k)];
-        }
-    }
-    const auto ra = geo::dice_rates(3, 3, a.data(), view, 0.1),
-               rb = geo::dice_rates(3, 3, b.data(), view, 0.1);
-    ASSERT_EQ(ra.at_u1, rb.at_u1);
-    const auto ga = geo::dice_part(3, 3, a.data(), ra), gb = geo::dice_part(3, 3, b.data(), rb);
-    const auto border = [](const geo::DicedPart& g) {
-        std::vector<base::V3d> points;
-        for (int j = 0; j < g.height; ++j) {
-            const auto& p = g.P[std::size_t(j * g.width + g.width - 1)];
-            if (points.empty() || !(points.back() == p)) {
-                points.push_back(p);
-            }
-        }
-        return points;
-    };
-    auto pa = border(ga), pb = border(gb);
-    std::reverse(pb.begin(), pb.end());
-    EXPECT_EQ(pa.size(), pb.size());
-    EXPECT_TRUE(pa == pb);
 }
 
 } // namespace

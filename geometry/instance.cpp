@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "geometry/instance.h"
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -21,6 +23,24 @@ Signature signature(const ShapeTable& table, const ShapeGroup& group, std::uint3
     return s;
 }
 
+// Upper bound of the largest stretch of a linear map, exact for rotations and uniform scales: from
+// mean m and spread s of the eigenvalues of A A^T, m + s sqrt(2) (Wolkowicz and Styan 1980).
+double largest_stretch(const Mat4& map) {
+    double trace = 0, squares = 0;
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) {
+            double sum = 0;
+            for (int k = 0; k < 3; ++k) {
+                sum += map.m[i][k] * map.m[j][k];
+            }
+            trace += i == j ? sum : 0;
+            squares += sum * sum;
+        }
+    }
+    const double mean = trace / 3, variance = std::max(squares / 3 - mean * mean, 0.0);
+    return std::sqrt(mean + std::sqrt(2 * variance));
+}
+
 Box group_box(const ShapeTable& table, const ShapeGroup& group) {
     Box box;
     for (std::uint32_t i = group.first_shape; i < group.first_shape + group.num_shapes; ++i) {
@@ -33,7 +53,7 @@ Box group_box(const ShapeTable& table, const ShapeGroup& group) {
 } // namespace
 
 std::vector<TraceItem> trace_items(const ShapeTable& table, const ShapeGroup& group,
-                                   std::uint32_t instance, std::span<const Mat4> cam_from_parent) {
+                                   std::uint32_t instance) {
     const Mat4 trace_from_parent = Mat4::translate(-group.centre);
     const Mat4 parent_from_trace = Mat4::translate(group.centre);
     std::vector<TraceItem> items;
@@ -49,8 +69,6 @@ std::vector<TraceItem> trace_items(const ShapeTable& table, const ShapeGroup& gr
         item.object_from_trace = placement.object_from_parent * parent_from_trace;
         item.mask = visibility_mask(a);
         item.cull = cull_side(a);
-        item.parent_from_object = placement.parent_from_object;
-        item.cam_from_parent = cam_from_parent;
         item.shading_rate = a.shading_rate;
         if (item.mask != 0) {
             items.push_back(item);
@@ -59,7 +77,41 @@ std::vector<TraceItem> trace_items(const ShapeTable& table, const ShapeGroup& gr
     return items;
 }
 
-void add_instances(ShapeTable& table, Accel& accel, base::Diag& diag) {
+LevelView level_view(const Box& box, std::vector<Mat4> cam_from_trace, const View& view) {
+    constexpr std::size_t most_near = 256;
+    struct Near {
+        double distance;
+        std::size_t index;
+        double px_per_unit; // stands in where there are too many
+    };
+    LevelView seen{{}, 0};
+    std::vector<Near> near;
+    for (std::size_t i = 0; i < cam_from_trace.size(); ++i) {
+        const Box b = transformed(cam_from_trace[i], box);
+        const Distances d = distances(b.lo, b.hi, view);
+        const double stretch = largest_stretch(cam_from_trace[i]);
+        if (d.is_even()) {
+            seen.far_px_per_unit =
+                std::max(seen.far_px_per_unit, stretch * pixels_per_unit(b.lo, b.hi, view));
+        } else {
+            View floored = view;
+            floored.near_clip = std::max(view.near_clip, 0.05 * length(b.hi - b.lo));
+            near.push_back({d.nearest, i, stretch * pixels_per_unit(b.lo, b.hi, floored)});
+        }
+    }
+    std::stable_sort(near.begin(), near.end(),
+                     [](const Near& a, const Near& b) { return a.distance < b.distance; });
+    for (std::size_t k = 0; k < near.size(); ++k) {
+        if (k < most_near) {
+            seen.cam_from_trace.push_back(cam_from_trace[near[k].index]);
+        } else {
+            seen.far_px_per_unit = std::max(seen.far_px_per_unit, near[k].px_per_unit);
+        }
+    }
+    return seen;
+}
+
+void add_instances(ShapeTable& table, const View& view, Accel& accel, base::Diag& diag) {
     const std::vector<rib::Instance>& instances = table.scene->instances;
     std::vector<std::vector<Mat4>> placements(
         table.objects.size()); // dicing looks at all of an object's
@@ -70,6 +122,7 @@ void add_instances(ShapeTable& table, Accel& accel, base::Diag& diag) {
         }
     }
     std::map<std::pair<std::uint32_t, Signature>, std::uint32_t> prototypes;
+    std::vector<LevelView> seen(table.objects.size());
     std::vector<bool> centred(table.objects.size());
     for (std::uint32_t i = 0; i < instances.size(); ++i) {
         if (!table.instances[i].drawn) {
@@ -78,12 +131,18 @@ void add_instances(ShapeTable& table, Accel& accel, base::Diag& diag) {
         const std::uint32_t object = instances[i].object;
         ShapeGroup& group = table.objects[object];
         if (!centred[object]) {
-            group.centre = group_box(table, group).center();
             centred[object] = true;
+            Box box = group_box(table, group);
+            group.centre = box.center();
+            for (Mat4& m : placements[object]) {
+                m = m * Mat4::translate(group.centre);
+            }
+            box.lo = box.lo - group.centre, box.hi = box.hi - group.centre;
+            seen[object] = level_view(box, std::move(placements[object]), view);
         }
         const auto [it, is_new] = prototypes.try_emplace({object, signature(table, group, i)}, 0);
         if (is_new) {
-            it->second = accel.add_prototype(trace_items(table, group, i, placements[object]));
+            it->second = accel.add_prototype(trace_items(table, group, i), seen[object]);
         }
         const Mat4 cam_from_trace = table.instances[i].cam_from_definition.parent_from_object *
                                     Mat4::translate(group.centre);

@@ -25,15 +25,14 @@ public:
     explicit PatchSurface(PatchData data);
 
     TraceForm trace_form() const override { return TraceForm::Grids; }
+    std::uint64_t plan(const TraceContext& context) override;
     void tessellate(const TraceContext& context, TraceBuffer& out) override;
     Box bound(const Mat4& dst_from_object) const override;
     bool needs_refine() const override { return true; }
     void refine(const ObjectRay& ray, LocalHit& hit) const override;
     TraceError trace_error(const LocalPoint& at, const SurfacePoint& here) const override;
-    std::size_t num_parts() const override { return deviation_.size(); }
-    std::size_t heap_bytes() const override {
-        return (data_.net.size() + data_.weights.size() + 4 * deviation_.size()) * sizeof(double);
-    }
+    std::size_t num_parts() const override { return static_cast<std::size_t>(num_parts_); }
+    std::size_t heap_bytes() const override;
     SurfacePoint evaluate(const LocalPoint& at) const override;
     LocalPoint step(const LocalPoint& at, double du, double dv) const override;
     std::array<double, 2> max_step() const override {
@@ -55,35 +54,64 @@ private:
     const double* net(std::uint32_t part) const {
         return data_.net.data() + 4 * part * data_.layout.points_per_part();
     }
-    BezierPoint local(const LocalPoint& at) const {
-        return evaluate_part(degree_u(), degree_v(), net(at.part), at.u, at.v);
+    // A place on a part by its own parameters. LocalPoint holds positions on the axes of the dicing
+    // instead: equal steps from vertex to vertex, so that floats suffice on parts a million times
+    // larger than what is seen of them.
+    struct PartPoint {
+        std::uint32_t part;
+        double s, t;
+    };
+    PartPoint on_part(const LocalPoint& at) const {
+        if (diced_.empty()) {
+            return {at.part, at.u, at.v};
+        }
+        const DicePlan& plan = diced_[at.part].plan;
+        return {at.part, plan.u.parameter(at.u), plan.v.parameter(at.v)};
     }
-    V3d normal(const LocalPoint& at, const BezierPoint& here) const;
+    LocalPoint on_axes(const PartPoint& p) const {
+        if (diced_.empty()) {
+            return {p.part, p.s, p.t};
+        }
+        const DicePlan& plan = diced_[p.part].plan;
+        return {p.part, plan.u.position(p.s), plan.v.position(p.t)};
+    }
+    BezierPoint local(const PartPoint& p) const {
+        return evaluate_part(degree_u(), degree_v(), net(p.part), p.s, p.t);
+    }
+    V3d normal(const PartPoint& at, const BezierPoint& here) const;
+    ParamRange search_range(const PartPoint& p) const;
     std::vector<double> transformed_net(std::uint32_t part, const Mat4& dst_from_object) const;
-    void corner_stencil(const LocalPoint& at, Stencil& out) const;
-    void vertex_stencil(const LocalPoint& at, Stencil& out) const;
+    void corner_stencil(const PartPoint& at, Stencil& out) const;
+    void vertex_stencil(const PartPoint& at, Stencil& out) const;
     std::size_t face(std::uint32_t part) const {
         return static_cast<std::size_t>(part_v(part).segment) *
                    static_cast<std::size_t>(data_.layout.u.num_segments()) +
                static_cast<std::size_t>(part_u(part).segment);
     }
 
+    struct Diced {
+        DicePlan plan;
+        DiceError error; // object units
+    };
     PatchData data_;
-    std::vector<double> deviation_; // per part, object units
-    std::vector<V3d> reach_;        // per part: largest |coordinate| of its control points
+    int num_parts_;
+    std::vector<Diced> diced_; // per part; empty until it is diced
 };
 
 PatchSurface::PatchSurface(PatchData data)
-    : data_(std::move(data)), deviation_(static_cast<std::size_t>(data_.layout.num_parts()), 0.0),
-      reach_(deviation_.size()) {
-    for (std::uint32_t part = 0; part < reach_.size(); ++part) {
-        const double* h = net(part);
-        for (std::size_t i = 0; i < data_.layout.points_per_part(); ++i, h += 4) {
-            for (int k = 0; k < 3; ++k) {
-                reach_[part][k] = std::max(reach_[part][k], std::fabs(h[k] / h[3]));
-            }
+    : data_(std::move(data)), num_parts_(data_.layout.num_parts()) {}
+
+std::size_t PatchSurface::heap_bytes() const {
+    std::size_t sum = sizeof *this + data_.layout.heap_bytes() +
+                      (data_.net.capacity() + data_.weights.capacity()) * sizeof(double) +
+                      diced_.capacity() * sizeof(Diced);
+    for (const Diced& d : diced_) {
+        for (const ParamAxis* axis : {&d.plan.u, &d.plan.v, &d.plan.at_v0, &d.plan.at_v1,
+                                      &d.plan.at_u0, &d.plan.at_u1}) {
+            sum += axis->heap_bytes();
         }
     }
+    return sum;
 }
 
 std::vector<double> PatchSurface::transformed_net(std::uint32_t part, const Mat4& m) const {
@@ -97,21 +125,30 @@ std::vector<double> PatchSurface::transformed_net(std::uint32_t part, const Mat4
     return out;
 }
 
-void PatchSurface::tessellate(const TraceContext& context, TraceBuffer& out) {
-    for (std::uint32_t part = 0; part < deviation_.size(); ++part) {
-        DiceRates rates;
-        for (const Mat4& cam_from_object : context.cam_from_object) {
-            const std::vector<double> net_cam = transformed_net(part, cam_from_object);
-            rates = finest(rates, dice_rates(degree_u(), degree_v(), net_cam.data(), context.view,
-                                             context.flatness_px));
-        }
-        deviation_[part] = chord_error(degree_u(), degree_v(), net(part), rates);
+std::uint64_t PatchSurface::plan(const TraceContext& context) {
+    diced_.resize(num_parts());
+    std::uint64_t vertices = 0;
+    for (std::uint32_t part = 0; part < diced_.size(); ++part) {
         const std::vector<double> net_trace = transformed_net(part, context.trace_from_object);
-        const DicedPart grid = dice_part(degree_u(), degree_v(), net_trace.data(), rates);
-        out.grids.push_back({out.num_vertices(), static_cast<std::uint32_t>(grid.width),
-                             static_cast<std::uint16_t>(grid.width),
-                             static_cast<std::uint16_t>(grid.height)});
-        for (const V3d& p : grid.P) {
+        Diced& d = diced_[part];
+        d.plan = plan_part(degree_u(), degree_v(), net_trace.data(), context.dice);
+        d.error = dice_error(degree_u(), degree_v(), net(part), d.plan);
+        vertices += static_cast<std::uint64_t>(d.plan.vertices());
+    }
+    return vertices;
+}
+
+void PatchSurface::tessellate(const TraceContext& context, TraceBuffer& out) {
+    std::vector<V3d> vertices;
+    for (std::uint32_t part = 0; part < diced_.size(); ++part) {
+        const DicePlan& plan = diced_[part].plan;
+        const std::vector<double> net_trace = transformed_net(part, context.trace_from_object);
+        vertices.clear();
+        dice_part(degree_u(), degree_v(), net_trace.data(), plan, vertices);
+        const auto width = static_cast<std::uint16_t>(plan.u.segments() + 1);
+        out.grids.push_back({out.num_vertices(), width, width,
+                             static_cast<std::uint16_t>(plan.v.segments() + 1)});
+        for (const V3d& p : vertices) {
             out.add_vertex(p);
         }
     }
@@ -127,17 +164,19 @@ Box PatchSurface::bound(const Mat4& dst_from_object) const {
     return box;
 }
 
-// Newton's method on the two planes that hold the ray: n1.(P - o) = n2.(P - o) = 0. Stays where it
-// started if the ray passes by the true surface (within the dicing error of a silhouette).
+// Newton's method on the two planes that hold the ray: n1.(P - o) = n2.(P - o) = 0, within two cells
+// of where it starts, so that it finds no other sheet of a folded part. Stays at the nearest place
+// if the ray passes by the true surface (within the dicing error of a silhouette).
 void PatchSurface::refine(const ObjectRay& ray, LocalHit& hit) const {
     const double dd = dot(ray.d, ray.d);
     const V3d axis = std::fabs(ray.d.x) < 0.6 * std::sqrt(dd) ? V3d{1, 0, 0} : V3d{0, 1, 0};
     const V3d n1 = normalize(cross(ray.d, axis)), n2 = normalize(cross(ray.d, n1));
-    LocalPoint at = hit.at;
-    LocalPoint best = at;
+    PartPoint at = on_part(hit.at);
+    const ParamRange near = search_range(at);
+    PartPoint best = at;
     double best_miss = std::numeric_limits<double>::infinity();
     V3d best_P;
-    constexpr int max_iterations = 8;
+    constexpr int max_iterations = 12;
     for (int i = 0; i < max_iterations; ++i) {
         const BezierPoint p = local(at);
         const double e1 = dot(n1, p.P - ray.o), e2 = dot(n2, p.P - ray.o);
@@ -154,24 +193,55 @@ void PatchSurface::refine(const ObjectRay& ray, LocalHit& hit) const {
         if (!(std::fabs(det) > 1e-14 * (a * a + b * b + c * c + d * d))) {
             break; // seen edge on, or a pole
         }
-        at.u = std::clamp(at.u - (e1 * d - e2 * b) / det, 0.0, 1.0);
-        at.v = std::clamp(at.v - (e2 * a - e1 * c) / det, 0.0, 1.0);
+        at.s = std::clamp(at.s - (e1 * d - e2 * b) / det, near.u0, near.u1);
+        at.t = std::clamp(at.t - (e2 * a - e1 * c) / det, near.v0, near.v1);
     }
     if (best_miss < std::numeric_limits<double>::infinity()) {
-        hit.at = best;
+        hit.at = on_axes(best);
         hit.t = dot(best_P - ray.o, ray.d) / dd;
     }
 }
 
+// Two cells to either side; cells at a border are as long as the border's own.
+ParamRange PatchSurface::search_range(const PartPoint& p) const {
+    double ds = 1, dt = 1;
+    if (!diced_.empty()) {
+        const DicePlan& plan = diced_[p.part].plan;
+        ds = plan.u.spacing(p.s), dt = plan.v.spacing(p.t);
+        const double first_s = plan.u.spacing(0), last_s = plan.u.spacing(1);
+        const double first_t = plan.v.spacing(0), last_t = plan.v.spacing(1);
+        const auto widen = [](bool at_border, double& step, const ParamAxis& border) {
+            step = at_border ? std::max(step, border.longest_segment(0, 1)) : step;
+        };
+        widen(p.t <= first_t, ds, plan.at_v0);
+        widen(p.t >= 1 - last_t, ds, plan.at_v1);
+        widen(p.s <= first_s, dt, plan.at_u0);
+        widen(p.s >= 1 - last_s, dt, plan.at_u1);
+    }
+    return {std::max(p.s - 2 * ds, 0.0), std::min(p.s + 2 * ds, 1.0), std::max(p.t - 2 * dt, 0.0),
+            std::min(p.t + 2 * dt, 1.0)};
+}
+
 TraceError PatchSurface::trace_error(const LocalPoint& at, const SurfacePoint& here) const {
-    return {here.Ng, reach_[at.part], deviation_[at.part]};
+    TraceError e{here.Ng, {}, 0};
+    const double* h = net(at.part);
+    for (std::size_t i = 0; i < data_.layout.points_per_part(); ++i, h += 4) {
+        for (int k = 0; k < 3; ++k) {
+            e.reach[k] = std::max(e.reach[k], std::fabs(h[k] / h[3]));
+        }
+    }
+    if (!diced_.empty()) {
+        const PartPoint p = on_part(at);
+        e.deviation = diced_[at.part].error.at(diced_[at.part].plan, p.s, p.t);
+    }
+    return e;
 }
 
 // The cross product vanishes where an edge has collapsed to a point or the parametrisation folds:
 // its limit is found by stepping towards the middle of the part.
-V3d PatchSurface::normal(const LocalPoint& at, const BezierPoint& here) const {
+V3d PatchSurface::normal(const PartPoint& at, const BezierPoint& here) const {
     BezierPoint p = here;
-    LocalPoint q = at;
+    PartPoint q = at;
     for (double shift = 1e-6; shift < 0.1; shift *= 10) {
         const V3d n = cross(p.dPdu, p.dPdv);
         const double len = length(n);
@@ -179,29 +249,31 @@ V3d PatchSurface::normal(const LocalPoint& at, const BezierPoint& here) const {
             length(p.dPdu) > 1e-9 * length(p.dPdv) && length(p.dPdv) > 1e-9 * length(p.dPdu)) {
             return n / len;
         }
-        q.u = at.u + (0.5 - at.u) * shift;
-        q.v = at.v + (0.5 - at.v) * shift;
+        q.s = at.s + (0.5 - at.s) * shift;
+        q.t = at.t + (0.5 - at.t) * shift;
         p = local(q);
     }
     return {0, 0, 1};
 }
 
 SurfacePoint PatchSurface::evaluate(const LocalPoint& at) const {
-    const BezierPoint p = local(at);
+    const PartPoint q = on_part(at);
+    const BezierPoint p = local(q);
     const SpanMap::Part &pu = part_u(at.part), &pv = part_v(at.part);
     SurfacePoint r;
-    r.u = pu.t0 + at.u * (pu.t1 - pu.t0);
-    r.v = pv.t0 + at.v * (pv.t1 - pv.t0);
+    r.u = pu.t0 + q.s * (pu.t1 - pu.t0);
+    r.v = pv.t0 + q.t * (pv.t1 - pv.t0);
     r.P = p.P;
     r.dPdu = p.dPdu / (pu.t1 - pu.t0);
     r.dPdv = p.dPdv / (pv.t1 - pv.t0);
-    r.Ng = normal(at, p);
+    r.Ng = normal(q, p);
     return r;
 }
 
 LocalPoint PatchSurface::step(const LocalPoint& at, double du, double dv) const {
     const SpanMap::Part &pu = part_u(at.part), &pv = part_v(at.part);
-    return {at.part, at.u + du / (pu.t1 - pu.t0), at.v + dv / (pv.t1 - pv.t0)};
+    const PartPoint p = on_part(at);
+    return on_axes({p.part, p.s + du / (pu.t1 - pu.t0), p.t + dv / (pv.t1 - pv.t0)});
 }
 
 std::size_t PatchSurface::num_items(rib::StorageClass storage) const {
@@ -232,7 +304,7 @@ static double in_segment(const SpanMap::Part& part, double local) {
     return (t - part.s0) / (part.s1 - part.s0);
 }
 
-void PatchSurface::corner_stencil(const LocalPoint& at, Stencil& out) const {
+void PatchSurface::corner_stencil(const PartPoint& at, Stencil& out) const {
     const SpanMap &mu = data_.layout.u, &mv = data_.layout.v;
     const auto corner = [](const SpanMap& m, int segment) {
         return static_cast<std::uint32_t>(m.periodic() ? segment % m.num_segments() : segment);
@@ -241,14 +313,14 @@ void PatchSurface::corner_stencil(const LocalPoint& at, Stencil& out) const {
     const int a = part_u(at.part).segment, b = part_v(at.part).segment;
     const std::uint32_t u0 = corner(mu, a), u1 = corner(mu, a + 1);
     const std::uint32_t v0 = corner(mv, b) * row, v1 = corner(mv, b + 1) * row;
-    out.add_bilinear({v0 + u0, v0 + u1, v1 + u0, v1 + u1}, in_segment(part_u(at.part), at.u),
-                     in_segment(part_v(at.part), at.v));
+    out.add_bilinear({v0 + u0, v0 + u1, v1 + u0, v1 + u1}, in_segment(part_u(at.part), at.s),
+                     in_segment(part_v(at.part), at.t));
 }
 
-void PatchSurface::vertex_stencil(const LocalPoint& at, Stencil& out) const {
+void PatchSurface::vertex_stencil(const PartPoint& at, Stencil& out) const {
     double bu[max_degree + 1], bv[max_degree + 1], unused[max_degree + 1];
-    bernstein(degree_u(), at.u, bu, unused);
-    bernstein(degree_v(), at.v, bv, unused);
+    bernstein(degree_u(), at.s, bu, unused);
+    bernstein(degree_v(), at.t, bv, unused);
     const SpanMap::Part &pu = part_u(at.part), &pv = part_v(at.part);
     // Weight of the c-th input of one direction: Bernstein polynomials times the map's column.
     const auto weight = [](const SpanMap::Part& part, int degree, const double* b, std::size_t c) {
@@ -284,16 +356,17 @@ void PatchSurface::stencil(rib::StorageClass storage, const LocalPoint& at, Sten
         out.add(static_cast<std::uint32_t>(face(at.part)), 1);
         return;
     case rib::StorageClass::Varying:
-        corner_stencil(at, out);
+        corner_stencil(on_part(at), out);
         return;
     case rib::StorageClass::Vertex:
-        vertex_stencil(at, out);
+        vertex_stencil(on_part(at), out);
         return;
     case rib::StorageClass::FaceVarying:
     case rib::StorageClass::FaceVertex: {
         const auto first = static_cast<std::uint32_t>(4 * face(at.part));
-        out.add_bilinear({first, first + 1, first + 2, first + 3},
-                         in_segment(part_u(at.part), at.u), in_segment(part_v(at.part), at.v));
+        const PartPoint p = on_part(at);
+        out.add_bilinear({first, first + 1, first + 2, first + 3}, in_segment(part_u(at.part), p.s),
+                         in_segment(part_v(at.part), p.t));
         return;
     }
     }

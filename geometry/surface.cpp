@@ -63,6 +63,10 @@ void TraceBuffer::add_vertex(const V3d& p_trace) {
     }
 }
 
+std::uint64_t Surface::plan(const TraceContext&) {
+    return 0;
+}
+
 void Surface::tessellate(const TraceContext&, TraceBuffer&) {}
 
 bool Surface::intersect(const ObjectRay&, LocalHit&) const {

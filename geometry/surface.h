@@ -10,6 +10,7 @@
 // make_surface() (shapes.cpp).
 #pragma once
 
+#include "geometry/dice.h"
 #include "geometry/world.h"
 #include "ribtools/param.h"
 #include "runtime/base/mat.h"
@@ -120,11 +121,8 @@ struct TraceBuffer {
 
 struct TraceContext {
     Mat4 trace_from_object;
-    std::span<const Mat4>
-        cam_from_object; // every placement of the primitive: one, or one per instance
-    View view;
-    float shading_rate = 1;
-    double flatness_px = 0.1; // largest silhouette error (design.md, section 6)
+    // Trace space as the camera sees it; dicing looks at this.
+    DiceContext dice;
 };
 
 // How far a traced primitive may lie from the true surface at a hit: the raw material of
@@ -145,8 +143,11 @@ public:
 
     // --- tracing
     [[nodiscard]] virtual TraceForm trace_form() const = 0;
-    // Triangles, Grids: appends one per part, in the order of parts. May use
-    // context.cam_from_object to choose its dicing; called once, before any hit.
+    // Grids: chooses how finely to dice, and says how many vertices that makes. May be called again
+    // with a larger flatness.
+    virtual std::uint64_t plan(const TraceContext& context);
+    // Triangles, Grids: appends one per part, in the order of parts; called once, after plan(),
+    // before any hit.
     virtual void tessellate(const TraceContext& context, TraceBuffer& out);
     // A box in the destination space that holds the whole surface.
     [[nodiscard]] virtual Box bound(const Mat4& dst_from_object) const = 0;

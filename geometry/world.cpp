@@ -19,11 +19,15 @@ public:
         : options_(options), accel_(options.num_threads, options.view) {
         const auto start = std::chrono::steady_clock::now();
         table_ = collect_shapes(scene, options, diag);
-        add_instances(table_, accel_, diag);
-        const Mat4 identity;
-        accel_.finish(trace_items(table_, table_.world, no_id, std::span(&identity, 1)));
+        add_instances(table_, options.view, accel_, diag);
+        accel_.finish(trace_items(table_, table_.world, no_id));
         if (const std::string error = accel_.error(); !error.empty()) {
             diag.report(base::Severity::Severe, base::Code::System, {}, "Embree: " + error);
+        }
+        if (const double flatness = accel_.stats().flatness_px; flatness > DiceContext().flatness_px) {
+            diag.report(base::Severity::Warning, base::Code::Limit, {},
+                        "curved surfaces would need too much memory; they keep within " +
+                            std::to_string(flatness) + " pixels of their true shape");
         }
         const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
         count(spent.count());

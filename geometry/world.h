@@ -27,6 +27,8 @@ struct View {
     // Raster pixels per unit of camera x (y) at z = 1 (perspective) or anywhere (orthographic).
     double pixels_per_unit_x = 1, pixels_per_unit_y = 1;
     double near_clip = 1e-10;
+    // Largest |x| and |y| of the picture, at z = 1 (perspective) or anywhere (orthographic).
+    double corner_x = 1, corner_y = 1;
 };
 
 struct BuildOptions {

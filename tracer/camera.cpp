@@ -268,10 +268,21 @@ double pixels_per_unit(const base::Mat4& raster_from_camera, int axis) {
 
 geo::View Camera::view() const {
     const base::Mat4 m = raster_from_camera();
-    return {.perspective = perspective_,
-            .pixels_per_unit_x = pixels_per_unit(m, 0),
-            .pixels_per_unit_y = pixels_per_unit(m, 1),
-            .near_clip = near_};
+    geo::View view{.perspective = perspective_,
+                   .pixels_per_unit_x = pixels_per_unit(m, 0),
+                   .pixels_per_unit_y = pixels_per_unit(m, 1),
+                   .near_clip = near_,
+                   .corner_x = 0,
+                   .corner_y = 0};
+    for (const double x : {0, raster_.xres}) {
+        for (const double y : {0, raster_.yres}) {
+            const Ray ray = pinhole_ray(x, y);
+            const base::V3d at = perspective_ ? ray.direction / ray.direction.z : ray.origin;
+            view.corner_x = std::max(view.corner_x, std::fabs(at.x));
+            view.corner_y = std::max(view.corner_y, std::fabs(at.y));
+        }
+    }
+    return view;
 }
 
 float Camera::footprint(float z_cam, float spacing_px) const {

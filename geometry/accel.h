@@ -23,9 +23,9 @@ struct TraceItem {
     Surface* surface = nullptr;
     Mat4 trace_from_object;
     Mat4 object_from_trace;
-    std::uint32_t mask = 0;  // RayMask
-    int cull = 0;            // ObjectRay::cull
-    float shading_rate = 1;
+    std::uint32_t mask = 0; // RayMask
+    int cull = 0;           // ObjectRay::cull
+    double flatness = 1;    // share of the level's flatness, at most 1
 };
 
 // How the camera sees a level: see DiceContext.

@@ -37,7 +37,7 @@ public:
         for (int attempt = 0; attempt < 8; ++attempt) {
             std::uint64_t vertices = 0;
             for (const TraceItem& item : items) {
-                vertices += item.surface->plan({item.trace_from_object, dice_});
+                vertices += item.surface->plan(context(item));
             }
             if (vertices <= max_level_vertices) {
                 break;
@@ -80,6 +80,12 @@ private:
     std::vector<unsigned> masks_; // by geomID
     std::map<Key, Geometry*> open_;
 
+    [[nodiscard]] TraceContext context(const TraceItem& item) const {
+        TraceContext c{item.trace_from_object, dice_};
+        c.dice.flatness_px *= item.flatness;
+        return c;
+    }
+
     Geometry& new_geometry(TraceForm form, std::uint32_t mask, int cull, bool refine) {
         Geometry& g = level_.geometries.emplace_back();
         g.form = form;
@@ -118,7 +124,7 @@ private:
         }
         g->buffer.may_borrow = !small;
         const std::size_t first = num_parts(*g);
-        item.surface->tessellate({item.trace_from_object, dice_}, g->buffer);
+        item.surface->tessellate(context(item), g->buffer);
         const std::size_t added = num_parts(*g) - first;
         (form == TraceForm::Grids ? level_.grids : level_.triangles) += added;
         if (small) {

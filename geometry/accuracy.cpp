@@ -111,7 +111,8 @@ private:
     }
 };
 
-// Corresponding points inside every triangle (of rational parts: of the homogeneous triangle). Embree cuts a quad from (1, 0) to (0, 1).
+// Corresponding points inside every triangle (of rational parts: of the homogeneous triangle).
+// Embree cuts a quad from (1, 0) to (0, 1).
 double deviation(const Grid& g, const Projector& project) {
     constexpr double inner[][3] = {
         {1. / 3, 1. / 3, 1. / 3}, {.5, .5, 0}, {.5, 0, .5}, {0, .5, .5}, {.6, .2, .2}};
@@ -158,7 +159,8 @@ std::optional<double> reach_along(const Grid& g, const Projector& project, doubl
             return;
         }
         const double f = da / (da - db);
-        const double r = (a.x + f * (b.x - a.x) - at.x) * n.x + (a.y + f * (b.y - a.y) - at.y) * n.y;
+        const double r =
+            (a.x + f * (b.x - a.x) - at.x) * n.x + (a.y + f * (b.y - a.y) - at.y) * n.y;
         reach = std::max(reach.value_or(-1e300), r);
     };
     for (int j = std::max(cj - near, 0); j <= std::min(cj + near, g.height() - 2); ++j) {
@@ -243,7 +245,8 @@ private:
         }
         return sum;
     }
-    // Near a cusp of the outline, or where two folds come close, "the" fold along a line is not one.
+    // Near a cusp of the outline, or where two folds come close, "the" fold along a line is not
+    // one.
     [[nodiscard]] bool is_cusp(double s, double t) const {
         const Raster here = project_(g_.truth(s, t));
         const V3d n3 = [&] {
@@ -289,8 +292,8 @@ void measure_borders(const Grid& g, const Projector& project, PartAccuracy& out)
             for (int i = 0; i + 1 < n; ++i) {
                 const V3d a = vertex(i), b = vertex(i + 1);
                 if (a.z > 1e-3 && b.z > 1e-3) {
-                    least = std::min(least,
-                                     distance_to_segment(project(p), project(a), project(b)));
+                    least =
+                        std::min(least, distance_to_segment(project(p), project(a), project(b)));
                 }
             }
             if (least < 1e300) {
@@ -311,10 +314,12 @@ std::vector<double> random_part(std::mt19937& rng, int degree, double size, cons
     std::vector<double> net;
     for (int j = 0; j <= degree; ++j) {
         for (int i = 0; i <= degree; ++i) {
-            V3d p(2.0 * i / degree - 1 + rough * jitter(rng), 2.0 * j / degree - 1 + rough * jitter(rng),
-                  rough * jitter(rng));
-            p = V3d(p.x * std::cos(a) - p.z * std::sin(a), p.y, p.x * std::sin(a) + p.z * std::cos(a));
-            p = V3d(p.x, p.y * std::cos(b) - p.z * std::sin(b), p.y * std::sin(b) + p.z * std::cos(b));
+            V3d p(2.0 * i / degree - 1 + rough * jitter(rng),
+                  2.0 * j / degree - 1 + rough * jitter(rng), rough * jitter(rng));
+            p = V3d(p.x * std::cos(a) - p.z * std::sin(a), p.y,
+                    p.x * std::sin(a) + p.z * std::cos(a));
+            p = V3d(p.x, p.y * std::cos(b) - p.z * std::sin(b),
+                    p.y * std::sin(b) + p.z * std::cos(b));
             p = p * size + centre;
             const double w = rational ? std::exp(jitter(rng)) : 1;
             net.insert(net.end(), {p.x * w, p.y * w, p.z * w, w});
@@ -352,9 +357,9 @@ double percentile(std::vector<double> values, double p) {
 
 namespace {
 
-constexpr std::array<float, 16> b_spline{
-    -1 / 6.f, 3 / 6.f, -3 / 6.f, 1 / 6.f, 3 / 6.f, -6 / 6.f, 3 / 6.f, 0,
-    -3 / 6.f, 0,       3 / 6.f,  0,       1 / 6.f, 4 / 6.f,  1 / 6.f, 0};
+constexpr std::array<float, 16> b_spline{-1 / 6.f, 3 / 6.f, -3 / 6.f, 1 / 6.f, 3 / 6.f, -6 / 6.f,
+                                         3 / 6.f,  0,       -3 / 6.f, 0,       3 / 6.f, 0,
+                                         1 / 6.f,  4 / 6.f, 1 / 6.f,  0};
 
 rib::Primitive patches(rib::Patches shape, std::vector<float> values, bool rational) {
     rib::Primitive p;
@@ -366,8 +371,8 @@ rib::Primitive patches(rib::Patches shape, std::vector<float> values, bool ratio
 }
 
 // Control polygon of a pot with poles: radius and height by row.
-constexpr double pot[][2] = {{0, -1},   {.5, -1}, {1, -.9},  {1, -.3}, {1, .3},
-                             {.3, .3},  {.3, .7}, {.3, 1.0}, {.2, 1},  {0, 1}};
+constexpr double pot[][2] = {{0, -1},  {.5, -1}, {1, -.9},  {1, -.3}, {1, .3},
+                             {.3, .3}, {.3, .7}, {.3, 1.0}, {.2, 1},  {0, 1}};
 constexpr int pot_rows = 10;
 
 V3d pot_point(int row, int column) {
@@ -431,14 +436,14 @@ rib::Primitive pot_mesh(double scale) {
             append(P, pot_point(j, i), scale);
         }
     }
-    return patches(
-        {.bicubic = true, .is_mesh = true, .nu = 12, .nv = pot_rows, .uperiodic = true}, P, false);
+    return patches({.bicubic = true, .is_mesh = true, .nu = 12, .nv = pot_rows, .uperiodic = true},
+                   P, false);
 }
 
 // The nine-point circle swept along the five-point half circle: exact, with poles.
 rib::Primitive rational_ball(double scale) {
     const double w = std::sqrt(0.5);
-    const double circle[9][3] = {{1, 0, 1},  {1, 1, w},   {0, 1, 1},  {-1, 1, w}, {-1, 0, 1},
+    const double circle[9][3] = {{1, 0, 1},   {1, 1, w},  {0, 1, 1},  {-1, 1, w}, {-1, 0, 1},
                                  {-1, -1, w}, {0, -1, 1}, {1, -1, w}, {1, 0, 1}};
     const double half[5][3] = {{0, -1, 1}, {1, -1, w}, {1, 0, 1}, {1, 1, w}, {0, 1, 1}};
     std::vector<float> Pw;
@@ -507,8 +512,8 @@ rib::Scene closed_scene(Closed kind, double scale, const Mat4& camera_from_world
     return std::move(b.scene);
 }
 
-std::size_t count_leaks(const World& world, Closed kind, double scale, const Mat4& camera_from_world,
-                        std::size_t rays, unsigned seed) {
+std::size_t count_leaks(const World& world, Closed kind, double scale,
+                        const Mat4& camera_from_world, std::size_t rays, unsigned seed) {
     std::mt19937 rng(seed);
     std::normal_distribution<double> normal;
     std::size_t leaks = 0;

@@ -38,7 +38,7 @@ double percentile(std::vector<double> values, double p);
 enum class Closed { SplineTorus, BezierPot, PatchesPot, RationalBall };
 rib::Scene closed_scene(Closed kind, double scale, const Mat4& camera_from_world);
 // Rays from points inside; how many leave the surface without meeting it.
-std::size_t count_leaks(const World& world, Closed kind, double scale, const Mat4& camera_from_world,
-                        std::size_t rays, unsigned seed);
+std::size_t count_leaks(const World& world, Closed kind, double scale,
+                        const Mat4& camera_from_world, std::size_t rays, unsigned seed);
 
 } // namespace geo::test

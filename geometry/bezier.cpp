@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace geo {
 
@@ -21,6 +22,26 @@ std::vector<double> bezier_from_basis(const std::array<float, 16>& basis) {
         }
     }
     return m;
+}
+
+// RIB writes bases in decimal (0.166667), so the end of one patch and the beginning of the next, a
+// step further, are the same combination of control points but for the last digits. Where they are,
+// they are made so exactly, for meshes and for separate Patch requests alike.
+void join_ends(std::vector<double>& weights, std::size_t step) {
+    constexpr double same = 5e-5;
+    const auto largest = [&](double most, double w) { return std::max(most, std::fabs(w)); };
+    const double limit = same * std::accumulate(weights.begin(), weights.end(), 0.0, largest);
+    double *first = weights.data(), *last = weights.data() + 12;
+    std::array<double, 4> joined{};
+    for (std::size_t j = 0; j < 4; ++j) {
+        joined[j] = j < step ? 0 : first[j - step];
+        const bool beyond = j + step >= 4;
+        if (std::fabs(last[j] - joined[j]) > limit || (beyond && std::fabs(first[j]) > limit)) {
+            return;
+        }
+    }
+    std::copy(joined.begin(), joined.end(), last);
+    std::fill(first + (4 - std::min<std::size_t>(step, 4)), first + 4, 0.0);
 }
 
 // Blossom of the B-spline piece over knot span k: row of weights on control points k-p .. k for the
@@ -62,9 +83,9 @@ std::vector<double> magnitudes(const std::vector<double>& values, int dim) {
     return largest;
 }
 
-// RIB writes bases in decimal (0.166667), so points that ought to coincide differ by a few 1e-7 of
-// the extent.
-constexpr double weld_tolerance = 4e-6;
+// Coordinates are floats: points that ought to coincide (NURBS spans, power coefficients) differ by
+// a few 1e-7 of the extent.
+constexpr double weld_tolerance = 5e-7;
 
 bool nearly_equal(const double* a, const double* b, const std::vector<double>& magnitude) {
     for (std::size_t k = 0; k < magnitude.size(); ++k) {
@@ -98,7 +119,8 @@ std::optional<SpanMap> SpanMap::bicubic(int num_points, bool periodic,
         reason = "the basis step is larger than the number of control points";
         return std::nullopt;
     }
-    const std::vector<double> weights = bezier_from_basis(basis);
+    std::vector<double> weights = bezier_from_basis(basis);
+    join_ends(weights, static_cast<std::size_t>(step));
     for (int a = 0; a < map.num_segments_; ++a) {
         Part part;
         for (int i = 0; i < 4; ++i) {

@@ -133,8 +133,8 @@ DiceError dice_error(int degree_u, int degree_v, const double* net, const DicePl
         if (a * border.segments() > 1.5) { // near the eye in places: the inside's bound stands in
             return 0.0f;
         }
-        const double near = border_bend +
-                            std::max(bend - border_bend, 0.0) * std::min(1.0, degree_across * h);
+        const double near =
+            border_bend + std::max(bend - border_bend, 0.0) * std::min(1.0, degree_across * h);
         return static_cast<float>((near * a * a + 2 * b.uv * a * h + bend_across * h * h) / 8);
     };
     DiceError e;

@@ -347,9 +347,8 @@ DicePlan plan_part(int degree_u, int degree_v, const double* net, const DiceCont
                           plan_border(net + 4 * degree_u, degree_v, row, context)};
     InnerNeeds inner(degree_u, degree_v, context, borders);
     const std::vector<double> whole(net, net + 4 * row * (degree_v + 1));
-    for_all_eyes(whole, context, [&](const std::vector<double>& seen, const Eye& eye) {
-        inner.add(seen, eye);
-    });
+    for_all_eyes(whole, context,
+                 [&](const std::vector<double>& seen, const Eye& eye) { inner.add(seen, eye); });
     DicePlan plan{{}, {}, borders.v0.axis, borders.v1.axis, borders.u0.axis, borders.u1.axis};
     for (double stretch = 1; stretch < 1e9; stretch *= 1.2) {
         plan.u = inner_axis(inner.u, stretch, borders.v0, borders.v1);

@@ -24,7 +24,7 @@ Signature signature(const ShapeTable& table, const ShapeGroup& group, std::uint3
 }
 
 // Upper bound of the largest stretch of a linear map, exact for rotations and uniform scales: from
-// mean m and spread s of the eigenvalues of A A^T, m + s sqrt(2) (Wolkowicz and Styan 1980).
+// mean m and spread s of the eigenvalues of A A^T, m + s sqrt(2) [Wolkowicz80].
 double largest_stretch(const Mat4& map) {
     double trace = 0, squares = 0;
     for (int i = 0; i < 3; ++i) {
@@ -50,6 +50,16 @@ Box group_box(const ShapeTable& table, const ShapeGroup& group) {
     return box;
 }
 
+// GeometricApproximation "flatness", in pixels: finer than usual if it says so.
+double flatness_share(const rib::Attributes& a) {
+    constexpr double least_px = 0.001;
+    const auto flatness = a.approximation->find("flatness");
+    return flatness == a.approximation->end() ? 1.0
+                                              : std::clamp(static_cast<double>(flatness->second),
+                                                           least_px, DiceContext().flatness_px) /
+                                                    DiceContext().flatness_px;
+}
+
 } // namespace
 
 std::vector<TraceItem> trace_items(const ShapeTable& table, const ShapeGroup& group,
@@ -69,7 +79,7 @@ std::vector<TraceItem> trace_items(const ShapeTable& table, const ShapeGroup& gr
         item.object_from_trace = placement.object_from_parent * parent_from_trace;
         item.mask = visibility_mask(a);
         item.cull = cull_side(a);
-        item.shading_rate = a.shading_rate;
+        item.flatness = flatness_share(a);
         if (item.mask != 0) {
             items.push_back(item);
         }

@@ -106,8 +106,8 @@ std::size_t PatchSurface::heap_bytes() const {
                       (data_.net.capacity() + data_.weights.capacity()) * sizeof(double) +
                       diced_.capacity() * sizeof(Diced);
     for (const Diced& d : diced_) {
-        for (const ParamAxis* axis : {&d.plan.u, &d.plan.v, &d.plan.at_v0, &d.plan.at_v1,
-                                      &d.plan.at_u0, &d.plan.at_u1}) {
+        for (const ParamAxis* axis :
+             {&d.plan.u, &d.plan.v, &d.plan.at_v0, &d.plan.at_v1, &d.plan.at_u0, &d.plan.at_u1}) {
             sum += axis->heap_bytes();
         }
     }
@@ -146,8 +146,8 @@ void PatchSurface::tessellate(const TraceContext& context, TraceBuffer& out) {
         vertices.clear();
         dice_part(degree_u(), degree_v(), net_trace.data(), plan, vertices);
         const auto width = static_cast<std::uint16_t>(plan.u.segments() + 1);
-        out.grids.push_back({out.num_vertices(), width, width,
-                             static_cast<std::uint16_t>(plan.v.segments() + 1)});
+        out.grids.push_back(
+            {out.num_vertices(), width, width, static_cast<std::uint16_t>(plan.v.segments() + 1)});
         for (const V3d& p : vertices) {
             out.add_vertex(p);
         }
@@ -164,9 +164,9 @@ Box PatchSurface::bound(const Mat4& dst_from_object) const {
     return box;
 }
 
-// Newton's method on the two planes that hold the ray: n1.(P - o) = n2.(P - o) = 0, within two cells
-// of where it starts, so that it finds no other sheet of a folded part. Stays at the nearest place
-// if the ray passes by the true surface (within the dicing error of a silhouette).
+// Newton's method on the two planes that hold the ray: n1.(P - o) = n2.(P - o) = 0, within two
+// cells of where it starts, so that it finds no other sheet of a folded part. Stays at the nearest
+// place if the ray passes by the true surface (within the dicing error of a silhouette).
 void PatchSurface::refine(const ObjectRay& ray, LocalHit& hit) const {
     const double dd = dot(ray.d, ray.d);
     const V3d axis = std::fabs(ray.d.x) < 0.6 * std::sqrt(dd) ? V3d{1, 0, 0} : V3d{0, 1, 0};

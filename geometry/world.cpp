@@ -24,7 +24,8 @@ public:
         if (const std::string error = accel_.error(); !error.empty()) {
             diag.report(base::Severity::Severe, base::Code::System, {}, "Embree: " + error);
         }
-        if (const double flatness = accel_.stats().flatness_px; flatness > DiceContext().flatness_px) {
+        if (const double flatness = accel_.stats().flatness_px;
+            flatness > DiceContext().flatness_px) {
             diag.report(base::Severity::Warning, base::Code::Limit, {},
                         "curved surfaces would need too much memory; they keep within " +
                             std::to_string(flatness) + " pixels of their true shape");

@@ -248,9 +248,6 @@ bool DisplayWriter::choose_driver() {
     if (!target.known_type) {
         warn(base::Code::Unimplement, "type \"" + display_.type + "\" is not known; writing " +
                                           path_ + (driver_ == Driver::Tiff ? " as TIFF" : ""));
-    } else if (driver_ == Driver::Window) {
-        warn(base::Code::Unimplement,
-             "type \"" + display_.type + "\" shows a window, which is not done; not written");
     } else if (driver_ == Driver::DepthMap) {
         warn(base::Code::Unimplement, "type \"" + display_.type + "\" is not written yet");
     }
@@ -402,6 +399,26 @@ PictureInfo picture_info(const Camera& camera) {
 std::optional<std::string> display_file(const rib::Display& display) {
     Target target = target_of(display);
     return makes_file(target.driver) ? std::optional(std::move(target.path)) : std::nullopt;
+}
+
+bool shows_window(const rib::Display& display) {
+    return target_of(display).driver == Driver::Window;
+}
+
+bool leaves_file(const rib::Display& display) {
+    const Driver driver = target_of(display).driver;
+    return driver != Driver::Window && driver != Driver::Null;
+}
+
+rib::Display file_of_window(const rib::Display& window, const std::string& default_file) {
+    rib::Display file = window;
+    file.type = "file";
+    if (file.name.empty()) {
+        file.name = default_file.empty() ? "ri.tif" : default_file;
+    } else if (!format_of_extension(file.name)) {
+        file.name += ".tif"; // never the bytes of a picture under the name of a scene
+    }
+    return file;
 }
 
 rib::Display default_display(std::string file, std::string mode) {

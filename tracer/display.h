@@ -46,6 +46,12 @@ struct PictureInfo {
 
 // The file that write_display() will make; nullopt for drivers that make none.
 [[nodiscard]] std::optional<std::string> display_file(const rib::Display& display);
+// A display that shows the picture on a screen ("framebuffer"); one that leaves a file.
+[[nodiscard]] bool shows_window(const rib::Display& display);
+[[nodiscard]] bool leaves_file(const rib::Display& display);
+// The file that keeps the picture of a window: its name, with .tif unless that names a format.
+[[nodiscard]] rib::Display file_of_window(const rib::Display& window,
+                                          const std::string& default_file);
 
 // The display for `-o FILE`, or for a RIB without Display: format by extension, TIFF without one.
 [[nodiscard]] rib::Display default_display(std::string file, std::string mode);

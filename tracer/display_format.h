@@ -78,4 +78,7 @@ private:
 [[nodiscard]] WriteOutcome write_png(const FilePicture& picture, OutputFile& file);
 [[nodiscard]] WriteOutcome write_exr(const FilePicture& picture, OutputFile& file);
 
+// A PNG in memory, 8 bits a channel; "" if it cannot be made (no pixels, no memory).
+[[nodiscard]] std::string encode_png_rgb(int width, int height, std::span<const unsigned char> rgb);
+
 } // namespace trace

@@ -111,4 +111,24 @@ WriteOutcome write_png(const FilePicture& picture, OutputFile& file) {
     return outcome;
 }
 
+std::string encode_png_rgb(int width, int height, std::span<const unsigned char> rgb) {
+    png_image image{};
+    image.version = PNG_IMAGE_VERSION;
+    image.width = static_cast<png_uint_32>(std::max(width, 0));
+    image.height = static_cast<png_uint_32>(std::max(height, 0));
+    image.format = PNG_FORMAT_RGB;
+    image.flags = PNG_IMAGE_FLAG_FAST;
+    const std::size_t pixels = static_cast<std::size_t>(image.width) * image.height;
+    if (pixels == 0 || rgb.size() != 3 * pixels) {
+        return {};
+    }
+    std::string out(PNG_IMAGE_PNG_SIZE_MAX(image), '\0');
+    png_alloc_size_t size = out.size();
+    const int done =
+        png_image_write_to_memory(&image, out.data(), &size, 0, rgb.data(), 0, nullptr);
+    png_image_free(&image);
+    out.resize(done != 0 ? size : 0);
+    return out;
+}
+
 } // namespace trace

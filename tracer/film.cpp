@@ -271,6 +271,9 @@ bool Film::restore(std::size_t bucket, std::span<const float> values) {
         }
     }
     release(bucket);
+    for (FilmObserver* observer : observers_) {
+        observer->bucket_done(bucket, output, image_);
+    }
     return true;
 }
 

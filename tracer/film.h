@@ -121,7 +121,7 @@ public:
 
     // Takes a bucket as finished: pixels filtered by an earlier run of the same frame, plane by
     // plane (Plane, then the extra channels). Before the first submit. False: the number of values
-    // is not that of the bucket, or it was restored already.
+    // is not that of the bucket, or it was restored already. Observers added before hear of it.
     bool restore(std::size_t bucket, std::span<const float> values);
     // False: only restored buckets would use its samples, so it need not be rendered.
     [[nodiscard]] bool needs_samples(std::size_t bucket) const;

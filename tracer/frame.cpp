@@ -5,12 +5,14 @@
 #include "runtime/base/output_file.h"
 #include "runtime/base/parallel.h"
 #include "tracer/bucket.h"
+#include "tracer/bucket_order.h"
 #include "tracer/camera.h"
 #include "tracer/display.h"
 #include "tracer/filter.h"
 #include "tracer/frame_hash.h"
 #include "tracer/imager.h"
 #include "tracer/lights.h"
+#include "tracer/live_display.h"
 #include "tracer/not_done.h"
 #include "tracer/pixel_trace.h"
 #include "tracer/quantize.h"
@@ -89,16 +91,19 @@ public:
 
     [[nodiscard]] Checkpoint::Hash hash() const { return frame_hash(scene_, *shaders_); }
 
-    // Who else takes part; either may be null. With a trace: its pixel only, and the trace is told
+    // Who else takes part; each may be null. With a trace: its pixel only, and the trace is told
     // what happens.
     struct Company {
         Checkpoint* checkpoint = nullptr;
         PixelTrace* trace = nullptr;
+        const rib::Display* shown = nullptr; // by settings.live, meanwhile
     };
     FrameResult render(Image& image, const Company& company) const;
 
 private:
-    FrameResult render_buckets(Film& film, const Sampler& sampler, PixelTrace* trace) const;
+    bool show(Film& film, const rib::Display* shown) const;
+    FrameResult render_buckets(Film& film, const Sampler& sampler,
+                               const std::vector<std::size_t>& order, PixelTrace* trace) const;
     void add_world_stats() const;
     void add_film_stats(const Film& film) const;
 
@@ -114,8 +119,34 @@ private:
     std::unique_ptr<geo::World> world_;
 };
 
+// Samples that wait for those of neighbours, at most, when rows are not rendered in order.
+constexpr std::size_t max_waiting_bytes = std::size_t{512} << 20;
+
+// Rows of buckets whose samples fit.
+int rows_at_once(const Film& film, const Sampler& sampler) {
+    if (film.num_buckets() == 0) {
+        return 1;
+    }
+    const std::size_t bytes = film.sample_pixels(0).area() *
+                              static_cast<std::size_t>(sampler.per_pixel()) * sizeof(Sample) *
+                              static_cast<std::size_t>(film.columns());
+    return static_cast<int>(std::clamp<std::size_t>(max_waiting_bytes / bytes, 1, 1 << 20));
+}
+
+// False: nobody watches.
+bool Frame::show(Film& film, const rib::Display* shown) const {
+    FilmObserver* viewer =
+        shown != nullptr ? settings_.live->begin_frame(*shown, scene_.options, film.image().pixels,
+                                                       film.num_buckets())
+                         : nullptr;
+    if (viewer != nullptr) {
+        film.add_observer(*viewer);
+    }
+    return viewer != nullptr;
+}
+
 FrameResult Frame::render(Image& image, const Company& company) const {
-    const auto& [checkpoint, trace] = company;
+    const auto& [checkpoint, trace, shown] = company;
     const PhaseTimer timer(tools_.stats, Phase::render);
     const rib::Options& options = scene_.options;
     const Sampler sampler(sampler_settings(options, tools_.diag));
@@ -131,10 +162,14 @@ FrameResult Frame::render(Image& image, const Company& company) const {
     if (!film) {
         return FrameResult::Failed;
     }
+    const int every = show(*film, shown) ? settings_.live->settings().every : 1;
     if (checkpoint != nullptr) {
         checkpoint->start(*film);
     }
-    const FrameResult result = render_buckets(*film, sampler, trace);
+    const FrameResult result = render_buckets(
+        *film, sampler,
+        coarse_first(film->num_buckets(), film->columns(), every, rows_at_once(*film, sampler)),
+        trace);
     if (trace != nullptr) {
         trace->finish(sampler, weights, film->image());
     }
@@ -146,7 +181,8 @@ FrameResult Frame::render(Image& image, const Company& company) const {
     return result;
 }
 
-FrameResult Frame::render_buckets(Film& film, const Sampler& sampler, PixelTrace* trace) const {
+FrameResult Frame::render_buckets(Film& film, const Sampler& sampler,
+                                  const std::vector<std::size_t>& order, PixelTrace* trace) const {
     const FrameContext frame = context();
     const VisibilityOptions visibility = visibility_options(scene_.options);
     std::vector<std::unique_ptr<BucketRenderer>> renderers(
@@ -154,28 +190,28 @@ FrameResult Frame::render_buckets(Film& film, const Sampler& sampler, PixelTrace
     OrderedPrinter printer(film.num_buckets());
     Progress progress(trace == nullptr ? settings_.progress : ProgressMode::None, stderr);
     progress.start("render", film.num_buckets());
-    base::parallel_for(
-        film.num_buckets(), settings_.num_threads, [&](std::size_t bucket, int slot) {
-            if (wants_stop(settings_, tools_.diag)) {
-                return false;
-            }
-            if (!film.needs_samples(bucket)) { // an earlier run has finished all around it
-                printer.finish(bucket, {});
-                progress.advance();
-                return true;
-            }
-            std::unique_ptr<BucketRenderer>& renderer = renderers[static_cast<std::size_t>(slot)];
-            if (!renderer) {
-                renderer = std::make_unique<BucketRenderer>(frame, camera_, sampler, *classes_,
-                                                            visibility);
-                renderer->thread().trace = trace;
-            }
-            renderer->render(bucket, film);
-            printer.finish(bucket, std::move(renderer->thread().printed));
-            renderer->thread().printed.clear();
+    base::parallel_for(order.size(), settings_.num_threads, [&](std::size_t item, int slot) {
+        if (wants_stop(settings_, tools_.diag)) {
+            return false;
+        }
+        const std::size_t bucket = order[item];
+        if (!film.needs_samples(bucket)) { // an earlier run has finished all around it
+            printer.finish(bucket, {});
             progress.advance();
             return true;
-        });
+        }
+        std::unique_ptr<BucketRenderer>& renderer = renderers[static_cast<std::size_t>(slot)];
+        if (!renderer) {
+            renderer =
+                std::make_unique<BucketRenderer>(frame, camera_, sampler, *classes_, visibility);
+            renderer->thread().trace = trace;
+        }
+        renderer->render(bucket, film);
+        printer.finish(bucket, std::move(renderer->thread().printed));
+        renderer->thread().printed.clear();
+        progress.advance();
+        return true;
+    });
     progress.finish();
     Counters counters;
     for (const auto& renderer : renderers) {
@@ -218,21 +254,37 @@ void Frame::add_film_stats(const Film& film) const {
     tools_.stats.amounts[Amount::film_bytes] = bytes;
 }
 
-// The displays of the frame; a scene that names none gets the default one.
-std::vector<rib::Display> displays_of(const rib::Options& options, const RenderSettings& settings) {
+// The displays of the frame; a scene that names none gets the default one. Where all are windows
+// the first one's picture goes to a file too: nothing is lost when the window closes (live-006).
+std::vector<rib::Display> displays_of(const rib::Options& options, const RenderSettings& settings,
+                                      base::Diag& diag) {
     std::vector<rib::Display> displays = options.displays;
     if (displays.empty() && !settings.default_output.empty()) {
         displays.push_back(default_display(settings.default_output, "rgba"));
     }
+    const auto window = std::find_if(displays.begin(), displays.end(), shows_window);
+    if (window != displays.end() && std::none_of(displays.begin(), displays.end(), leaves_file)) {
+        const rib::Display file = file_of_window(*window, settings.default_output);
+        diag.report_once("window-file", base::Severity::Info, base::Code::None, window->pos,
+                         "Display \"" + window->name + "\" \"" + window->type +
+                             "\": no other display leaves a file; the picture also goes to " +
+                             file.name);
+        displays.push_back(file);
+    }
     return displays;
 }
 
+const rib::Display* shown_display(const std::vector<rib::Display>& displays,
+                                  const RenderSettings& settings) {
+    return settings.live != nullptr ? settings.live->shown(displays) : nullptr;
+}
+
 bool all_exist(const std::vector<rib::Display>& displays) {
-    return !displays.empty() &&
+    return std::any_of(displays.begin(), displays.end(), leaves_file) &&
            std::all_of(displays.begin(), displays.end(), [](const rib::Display& display) {
                const std::optional<std::string> file = display_file(display);
                std::error_code error;
-               return file && std::filesystem::exists(*file, error);
+               return !leaves_file(display) || (file && std::filesystem::exists(*file, error));
            });
 }
 
@@ -299,17 +351,24 @@ private:
 };
 
 FrameResult write_displays(const rib::Scene& scene, const Frame& frame,
-                           const RenderSettings& settings, const FrameTools& tools, Image&& image) {
+                           const RenderSettings& settings, const FrameTools& tools,
+                           const std::vector<rib::Display>& displays, Image&& image) {
     const PhaseTimer timer(tools.stats, Phase::write);
-    const std::vector<rib::Display> displays = displays_of(scene.options, settings);
+    const rib::Display* shown = shown_display(displays, settings);
     Developer developer(frame, settings, tools, std::move(image));
     FrameResult result = FrameResult::Done;
     for (const rib::Display& display : displays) {
         if (wants_stop(settings, tools.diag)) {
             return FrameResult::Interrupted;
         }
+        if (&display != shown && !leaves_file(display)) {
+            continue;
+        }
         const Exposure exposure = exposure_of(scene.options, display);
         const Image& picture = developer.developed(exposure, &display == &displays.back());
+        if (&display == shown) {
+            settings.live->show_final(picture);
+        }
         const DisplayResult written = write_display(display, scene.options, picture,
                                                     picture_info(frame.camera()), tools.diag);
         result = written == DisplayResult::Failed ? FrameResult::Failed : result;
@@ -319,7 +378,8 @@ FrameResult write_displays(const rib::Scene& scene, const Frame& frame,
 
 // --trace-pixel: prints what the pixels did, writes no picture.
 FrameResult trace_pixels(const rib::Scene& scene, const Frame& frame,
-                         const RenderSettings& settings, const FrameTools& tools) {
+                         const RenderSettings& settings, const FrameTools& tools,
+                         const std::vector<rib::Display>& displays) {
     const PixelRange rendered = frame.camera().raster().rendered();
     const FrameContext context = frame.context();
     for (const auto& [x, y] : settings.trace_pixels) {
@@ -329,12 +389,13 @@ FrameResult trace_pixels(const rib::Scene& scene, const Frame& frame,
         }
         PixelTrace trace(context, x, y);
         Image filtered;
-        const FrameResult result = frame.render(filtered, {.checkpoint = nullptr, .trace = &trace});
+        const FrameResult result =
+            frame.render(filtered, {.checkpoint = nullptr, .trace = &trace, .shown = nullptr});
         if (result != FrameResult::Done) {
             return result;
         }
         std::string text = trace.text();
-        for (const rib::Display& display : displays_of(scene.options, settings)) {
+        for (const rib::Display& display : displays) {
             Image picture = filtered;
             const Exposure exposure = exposure_of(scene.options, display);
             apply_exposure(picture, exposure);
@@ -360,7 +421,7 @@ FrameResult render_image(const rib::Scene& scene, const RenderSettings& settings
 
 FrameResult render_frame(const rib::Scene& scene, const RenderSettings& settings,
                          const FrameTools& tools) {
-    const std::vector<rib::Display> displays = displays_of(scene.options, settings);
+    const std::vector<rib::Display> displays = displays_of(scene.options, settings, tools.diag);
     const bool tracing = !settings.trace_pixels.empty();
     if (settings.keep_existing && !tracing && all_exist(displays)) {
         tools.diag.report(base::Severity::Info, base::Code::None, {},
@@ -376,20 +437,25 @@ FrameResult render_frame(const rib::Scene& scene, const RenderSettings& settings
         return FrameResult::Interrupted;
     }
     if (tracing) {
-        return trace_pixels(scene, frame, settings, tools);
+        return trace_pixels(scene, frame, settings, tools, displays);
     }
     Checkpoint checkpoint(
         settings.checkpoint, checkpoint_of(displays, settings.checkpoint),
         [&frame] { return frame.hash(); }, tools.diag);
     Image image;
-    FrameResult result = frame.render(image, {.checkpoint = &checkpoint, .trace = nullptr});
+    FrameResult result = frame.render(
+        image,
+        {.checkpoint = &checkpoint, .trace = nullptr, .shown = shown_display(displays, settings)});
     if (result == FrameResult::Done) {
-        result = write_displays(scene, frame, settings, tools, std::move(image));
+        result = write_displays(scene, frame, settings, tools, displays, std::move(image));
     }
     if (result == FrameResult::Done) {
         checkpoint.remove();
     } else {
         checkpoint.report_kept();
+    }
+    if (settings.live != nullptr) {
+        settings.live->end_frame(result != FrameResult::Interrupted);
     }
     return result;
 }

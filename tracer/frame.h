@@ -18,6 +18,8 @@
 
 namespace trace {
 
+class LiveDisplay;
+
 struct RenderSettings {
     int num_threads = 0; // 0: all
     ProgressMode progress = ProgressMode::None;
@@ -29,6 +31,7 @@ struct RenderSettings {
     std::vector<std::pair<int, int>> trace_pixels;
     bool keep_existing = false; // frames whose files are all there already are skipped (-safe)
     CheckpointSettings checkpoint;
+    LiveDisplay* live = nullptr; // shows frames while they render
 };
 
 // From good to bad.

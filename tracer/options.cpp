@@ -197,6 +197,19 @@ private:
         }
     }
 
+    void apply_show(const Row& row) {
+        RenderOptions& o = result_.options;
+        o.show = true;
+        if (row.id == Id::servers) {
+            o.servers = parse_live_servers(values_[0]);
+            if (!o.servers) {
+                fail(row, "needs " + std::string(live_servers_form));
+            }
+        } else if (!values_.empty()) {
+            o.show_every = std::max(integer(0), 1);
+        }
+    }
+
     void apply(const Row& row) {
         RenderOptions& o = result_.options;
         if (row.state == State::LATER) {
@@ -230,6 +243,12 @@ private:
                 o.shader_path.push_back(std::move(directory));
             }
             break;
+        case Id::display:
+        case Id::servers:
+            apply_show(row);
+            break;
+        case Id::position:
+            break; // a page has none
         case Id::silent:
             o.silent = true;
             break;
@@ -289,8 +308,6 @@ private:
         case Id::radio:
         case Id::radio_error:
         case Id::rsamples:
-        case Id::display:
-        case Id::position:
         case Id::backend:
             break; // LATER
         }

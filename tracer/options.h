@@ -5,6 +5,7 @@
 #pragma once
 
 #include "tracer/checkpoint.h"
+#include "tracer/live_display.h"
 #include "tracer/progress.h"
 
 #include <array>
@@ -29,6 +30,9 @@ struct RenderOptions {
     std::vector<std::pair<int, int>> trace_pixels;
     CheckpointSettings checkpoint;
     ProgressMode progress = ProgressMode::Auto;
+    bool show = false;                  // -d
+    int show_every = 1;                 // every Nth line of buckets first
+    std::optional<LiveServers> servers; // --display-server
     bool silent = false, safe = false, verbose = false;
     bool stats = false, allow_programs = false, strict = false;
     bool help = false, version = false;

@@ -15,14 +15,20 @@ TEST(RenderOptions, SpellingsOfProgramsThatCallUs) {
     EXPECT_EQ(ayam.error, "");
     EXPECT_EQ(ayam.options.progress, ProgressMode::R90000);
     EXPECT_EQ(ayam.options.files, std::vector<std::string>{"f.rib"});
-    EXPECT_EQ(ayam.options.not_yet, std::vector<std::string>{"-d"});
+    EXPECT_TRUE(ayam.options.show);
+    EXPECT_EQ(ayam.options.show_every, 4);
 
     const auto wings = parse({"-silent", "-res", "320", "200", "-d", "16", "f.rib"});
     EXPECT_EQ(wings.error, "");
     EXPECT_TRUE(wings.options.silent);
     EXPECT_EQ(wings.options.res, std::pair(320, 200));
 
+    EXPECT_EQ(wings.options.show_every, 16);
     EXPECT_EQ(parse({"-d", "f.rib"}).options.files, std::vector<std::string>{"f.rib"});
+    EXPECT_EQ(parse({"-d", "f.rib"}).options.show_every, 1);
+    EXPECT_EQ(parse({"-d", "-3", "f.rib"}).options.show_every, 1);
+    EXPECT_TRUE(parse({"--display-server=host:1234", "f.rib"}).options.show);
+    EXPECT_NE(parse({"--display-server", "host"}).error, "");
     EXPECT_EQ(parse({"-var", "0.1", "2", "8", "-radio", "10", "-"}).options.files,
               std::vector<std::string>{"-"});
 }

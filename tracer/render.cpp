@@ -8,6 +8,7 @@
 #include "slc/driver.h"
 #include "tracer/display.h"
 #include "tracer/interrupt.h"
+#include "tracer/live_display.h"
 #include "tracer/options.h"
 #include "tracer/renderer.h"
 #include "tracer/version.h"
@@ -126,6 +127,34 @@ std::vector<std::string> trusted_directories(const trace::RenderOptions& options
     return directories;
 }
 
+// --display-server, else PERIGEE_DISPLAY, else what there is.
+trace::LiveServers live_servers(const trace::RenderOptions& options, base::Diag& diag) {
+    if (options.servers) {
+        return *options.servers;
+    }
+    const char* value = std::getenv("PERIGEE_DISPLAY");
+    const std::string text = value != nullptr && *value != '\0' ? value : "auto";
+    const auto servers = trace::parse_live_servers(text);
+    if (!servers) {
+        diag.report(base::Severity::Warning, base::Code::BadToken, {},
+                    "PERIGEE_DISPLAY is '" + text + "', not " +
+                        std::string(trace::live_servers_form) + "; auto is used");
+    }
+    return servers ? *servers : *trace::parse_live_servers("auto");
+}
+
+trace::LiveSettings live_settings(const trace::RenderOptions& options, base::Diag& diag) {
+    trace::LiveSettings settings;
+    settings.on_terminal = isatty(STDERR_FILENO) != 0;
+    settings.every_frame = options.show;
+    // A framebuffer in a RIB opens nothing where nobody could read the address (live-006).
+    settings.framebuffers =
+        options.show || settings.on_terminal || std::getenv("PERIGEE_DISPLAY") != nullptr;
+    settings.every = options.show_every;
+    settings.servers = live_servers(options, diag);
+    return settings;
+}
+
 trace::RendererConfig renderer_config(const trace::RenderOptions& options) {
     trace::RendererConfig config;
     config.settings.num_threads = options.num_threads;
@@ -236,14 +265,24 @@ int run(const trace::RenderOptions& options, const std::vector<const char*>& arg
     }
     report_later_switches(options, diag);
     trace::catch_interrupts();
-    trace::Renderer renderer(renderer_config(options), diag);
+    trace::LiveDisplay live(live_settings(options, diag), diag);
+    if (options.show) {
+        live.start(); // early: the address can be opened while the scene is read
+    }
+    trace::RendererConfig config = renderer_config(options);
+    config.settings.live = &live;
+    trace::Renderer renderer(std::move(config), diag);
     rib::Reader reader(renderer, diag, reader_config(options));
     const rib::ReadStatus status = read_all(reader, renderer, options, diag);
+    if (trace::is_interrupted()) {
+        live.finish(trace::is_interrupted); // pages are told
+    }
     trace::finish_interrupt();
     trace::RunRecord& record = renderer.finish();
     record.arguments.assign(arguments.begin(), arguments.end());
-    return report_run(options, record, diag) ? exit_code(status, renderer, options, diag)
-                                             : exit_environment;
+    const bool reported = report_run(options, record, diag);
+    live.finish(trace::is_interrupted); // Ctrl-C ends the showing only: the work is done
+    return reported ? exit_code(status, renderer, options, diag) : exit_environment;
 }
 
 } // namespace

@@ -387,18 +387,35 @@ TEST_F(DisplayTest, Drivers) {
     EXPECT_TRUE(fs::exists(path("a.jpg.tif")));
     EXPECT_FALSE(fs::exists(path("a.jpg")));
     EXPECT_EQ(warnings(), 1U);
-    EXPECT_EQ(write(display("n", "null", "rgb")), DisplayResult::Skipped);
+    for (const char* type : {"null", "framebuffer", "it"}) { // windows are live_display.cpp's
+        EXPECT_EQ(write(display("n", type, "rgb")), DisplayResult::Skipped);
+    }
     EXPECT_EQ(warnings(), 1U);
-    for (const char* type : {"framebuffer", "it", "zfile", "shadow", "deepshad"}) {
+    for (const char* type : {"zfile", "shadow", "deepshad"}) {
         EXPECT_EQ(write(display("n", type, "rgb")), DisplayResult::Skipped);
     }
     EXPECT_EQ(write(display("n", "tiff", "varying normal Nn")), DisplayResult::Skipped);
     EXPECT_EQ(write(display("n", "tiff", "rgb,,a")), DisplayResult::Skipped);
-    EXPECT_EQ(warnings(), 8U);
+    EXPECT_EQ(warnings(), 6U);
     EXPECT_FALSE(fs::exists(path("n")));
     image_ = {};
     EXPECT_EQ(write(display("n", "tiff", "rgb")), DisplayResult::Skipped);
-    EXPECT_EQ(warnings(), 9U);
+    EXPECT_EQ(warnings(), 7U);
+}
+
+TEST_F(DisplayTest, WindowsAndTheFilesInTheirPlace) {
+    EXPECT_TRUE(trace::shows_window(display("n", "framebuffer", "rgb")));
+    EXPECT_FALSE(trace::shows_window(display("n", "file", "rgb")));
+    EXPECT_FALSE(trace::leaves_file(display("n", "x11", "rgb")));
+    EXPECT_FALSE(trace::leaves_file(display("n", "null", "rgb")));
+    EXPECT_TRUE(trace::leaves_file(display("n", "unknown", "rgb")));
+    const auto name = [&](const char* window) {
+        return trace::file_of_window(display(window, "framebuffer", "z"), "scene.tif").name;
+    };
+    EXPECT_EQ(name("a.png"), path("a.png"));
+    EXPECT_EQ(name("scene.rib"), path("scene.rib.tif"));
+    EXPECT_EQ(trace::file_of_window({}, "scene.tif").name, "scene.tif");
+    EXPECT_EQ(trace::file_of_window({}, "").name, "ri.tif");
 }
 
 TEST_F(DisplayTest, FullDiskIsReportedWithItsPlace) {

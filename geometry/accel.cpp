@@ -2,6 +2,7 @@
 #include "geometry/accel.h"
 
 #include "geometry/accel_level.h"
+#include "runtime/base/lanes4.h"
 
 #include <algorithm>
 #include <atomic>
@@ -87,10 +88,8 @@ namespace {
 
 constexpr int lanes = RayPacket::size;
 
-// Four lanes at a time: GCC compares 32-byte vectors one by one where the processor has 16-byte
-// registers only, which is what this file is compiled for. RayPacket's arrays are aligned for it.
-using Float4 [[gnu::vector_size(16), gnu::may_alias]] = float;
-using Int4 [[gnu::vector_size(16), gnu::may_alias]] = int;
+// RayPacket's arrays are aligned for reading four lanes at a time.
+using base::Float4, base::Int4;
 constexpr int group = 4;
 
 // One int per lane, -1 = trace it: origin and direction finite and within limit, a direction at

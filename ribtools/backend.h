@@ -5,6 +5,7 @@
 
 #include "ribtools/scene.h"
 
+#include <cstdint>
 #include <memory>
 
 namespace rib {
@@ -19,9 +20,23 @@ struct TextureRequest {             // MakeTexture and its relatives
     base::SourcePos pos;
 };
 
+enum class ShaderRole : std::uint8_t {
+    Surface,
+    Displacement,
+    Atmosphere,
+    Interior,
+    Exterior,
+    Light,
+    Imager
+};
+
 class Backend {
 public:
     virtual ~Backend() = default;
+    // A request of a wanted world, or of its options, names a shader: time to look for it, long
+    // before the world is complete. It may still turn out that nothing uses it. Comes once for
+    // equal calls.
+    virtual void shader_named(const ShaderCall&, ShaderRole) {}
     // A world is complete. False asks the reader to stop (interrupted, out of disk ...).
     virtual bool render(std::unique_ptr<Scene> scene) = 0;
     // Runs at once. False: not made, and the backend has said why; reading goes on.

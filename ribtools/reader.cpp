@@ -187,13 +187,9 @@ private:
     }
 
     std::vector<std::string> candidates_for(const std::string& name) const {
-        std::vector<std::string> directories, readers;
-        const auto& paths = state_.options().search_paths;
-        for (const char* key : {"archive", "resource"}) {
-            if (const auto it = paths.find(key); it != paths.end()) {
-                directories.insert(directories.end(), it->second.begin(), it->second.end());
-            }
-        }
+        const std::vector<std::string> directories =
+            search_directories(state_.options(), "archive");
+        std::vector<std::string> readers;
         for (auto it = streams_.rbegin(); it != streams_.rend(); ++it) {
             if (!it->path.starts_with("archive ")) {
                 readers.push_back(it->path);

@@ -4,6 +4,7 @@
 #include "ribtools/rib_parse.h"
 #include "ribtools/search_path.h"
 #include "ribtools/spelling.h"
+#include "runtime/base/search_path.h"
 
 #include <algorithm>
 #include <new>
@@ -146,7 +147,7 @@ private:
             }
             std::vector<std::string> directories;
             for (const std::string& value : p.strings) {
-                for (std::string& d : expand_search_path(value, archive_path_, {})) {
+                for (std::string& d : base::expand_search_path(value, archive_path_, {})) {
                     directories.push_back(std::move(d));
                 }
             }

@@ -92,9 +92,11 @@ using TransformId = std::uint32_t; // index into Scene::transforms
 struct ShaderCall {
     std::string name; // "" = none; as written, path and suffix included
     ParamList params;
+    Shared<std::vector<std::string>> search_path; // that held at the request: "shader", "resource"
     TransformId world_from_shader =
         0; // for lights made before WorldBegin: camera-from-shader, see Light
-    std::uint32_t same_params_as = none; // first ShaderCall of the scene with equal name and params
+    // First ShaderCall of the scene with equal name, path and params.
+    std::uint32_t same_params_as = none;
     base::SourcePos pos;
 };
 using ShaderId = std::uint32_t; // index into Scene::shaders; none = no shader

@@ -114,8 +114,9 @@ void Hasher::add(const Transform::Key& key) {
 }
 
 void Hasher::add(const ShaderCall& call) {
-    const auto& [name, params, world_from_shader, same_params_as, pos] = call;
+    const auto& [name, params, search_path, world_from_shader, same_params_as, pos] = call;
     all(name, params, world_from_shader, same_params_as);
+    static_cast<void>(search_path); // what was found on it counts, and not here
     static_cast<void>(pos);
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Search path values (ri.md 14.1): lists of directories with &, @, ~ and environment variables; and
-// where an archive may lie.
+// Where files that a RIB names are looked for. Values of paths: runtime/base/search_path.h.
 #pragma once
+
+#include "ribtools/scene.h"
 
 #include <string>
 #include <string_view>
@@ -9,11 +10,10 @@
 
 namespace rib {
 
-// Directories separated by ':' or ';'. "&" = previous, "@" = defaults, "~" = home, $NAME ${NAME}
-// %NAME% = environment variables (empty if unset). Empty elements are dropped.
-[[nodiscard]] std::vector<std::string> expand_search_path(std::string_view value,
-                                                          const std::vector<std::string>& previous,
-                                                          const std::vector<std::string>& defaults);
+// The directories for one kind of file, "shader", "texture" ..., then those for all kinds,
+// "resource".
+[[nodiscard]] std::vector<std::string> search_directories(const Options& options,
+                                                          const std::string& kind);
 
 // Names that start with "/", "./" or "../" bypass the search path.
 [[nodiscard]] bool bypasses_search_path(std::string_view name);

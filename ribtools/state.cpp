@@ -2,6 +2,7 @@
 // State: dispatch, legality, messages, and the records that primitives share.
 #include "ribtools/state.h"
 
+#include "ribtools/search_path.h"
 #include "ribtools/state_impl.h"
 
 #include <functional>
@@ -207,14 +208,34 @@ TransformId State::freeze_transform() {
     return transform_.id;
 }
 
+// Calls share one path until it changes.
+Shared<std::vector<std::string>> State::shader_path() {
+    std::vector<std::string> path = search_directories(options_, "shader");
+    if (path != *shader_path_) {
+        shader_path_ = std::move(path);
+    }
+    return shader_path_;
+}
+
+void State::announce(const ShaderCall& call, ShaderRole role) {
+    const bool in_world = blocks_.inside(BlockKind::World);
+    const bool is_wanted =
+        in_world ? world_wanted_
+                 : !options_.in_frame || !config_.wants_world || config_.wants_world(options_);
+    if (is_wanted) {
+        backend_.shader_named(call, role);
+    }
+}
+
 ShaderId State::add_shader(std::string name, ParamList params, TransformId space,
-                           base::SourcePos pos) {
+                           base::SourcePos pos, ShaderRole role) {
     const std::size_t hash = hash_of(name, params);
+    const Shared<std::vector<std::string>> path = shader_path();
     ShaderId first = none;
     auto [it, end] = shader_index_.equal_range(hash);
     for (int i = 0; it != end && i < max_candidates; ++it, ++i) {
         const ShaderCall& call = scene_->shaders[it->second];
-        if (call.name == name && call.params == params) {
+        if (call.name == name && call.params == params && call.search_path == path) {
             if (call.world_from_shader == space) {
                 return it->second;
             }
@@ -225,9 +246,11 @@ ShaderId State::add_shader(std::string name, ParamList params, TransformId space
     ShaderCall call;
     call.name = std::move(name);
     call.params = std::move(params);
+    call.search_path = path;
     call.world_from_shader = space;
     call.same_params_as = first == none ? id : first;
     call.pos = pos;
+    announce(call, role);
     scene_->shaders.push_back(std::move(call));
     shader_index_.emplace(hash, id);
     return id;

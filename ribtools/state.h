@@ -105,7 +105,9 @@ private:
     [[nodiscard]] TransformId freeze_transform();
     [[nodiscard]] TransformId add_transform(const Transform& t);
     [[nodiscard]] ShaderId add_shader(std::string name, ParamList params, TransformId space,
-                                      base::SourcePos pos);
+                                      base::SourcePos pos, ShaderRole role);
+    void announce(const ShaderCall& call, ShaderRole role);
+    [[nodiscard]] Shared<std::vector<std::string>> shader_path();
     void forget_indices();
     Attributes& edit_attributes();
 
@@ -118,7 +120,7 @@ private:
     [[nodiscard]] base::Mat4 camera_from_current() const;
 
     // --- shaders and lights ---
-    ShaderId shader_attribute(Request& request);
+    ShaderId shader_attribute(Request& request, ShaderRole role);
     LightId add_light(Request& request, bool is_area);
     void set_color(std::array<float, 3>& target, const Request& request);
 
@@ -154,6 +156,7 @@ private:
     Dictionary dictionary_;
     ColorModel colors_;
     Options options_;
+    Shared<std::vector<std::string>> shader_path_; // of the last call
     Frozen<Attributes> attributes_;
     // World-from-current inside a world, camera-from-current before it, definition-from-current in
     // an object.

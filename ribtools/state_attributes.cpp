@@ -70,36 +70,36 @@ void State::do_TextureCoordinates(Request& request) {
 }
 
 // "" and "null" mean none, except for Surface, where null is a shader of its own (ri.md 6.6).
-ShaderId State::shader_attribute(Request& request) {
+ShaderId State::shader_attribute(Request& request, ShaderRole role) {
     const std::string& name = request.string(0);
     if (name.empty() || (name == "null" && request.id != RequestId::Surface)) {
         return none;
     }
-    return add_shader(name, std::move(request.params), freeze_transform(), request.pos);
+    return add_shader(name, std::move(request.params), freeze_transform(), request.pos, role);
 }
 
 void State::do_Surface(Request& request) {
-    const ShaderId id = shader_attribute(request);
+    const ShaderId id = shader_attribute(request, ShaderRole::Surface);
     edit_attributes().surface = id;
 }
 
 void State::do_Displacement(Request& request) {
-    const ShaderId id = shader_attribute(request);
+    const ShaderId id = shader_attribute(request, ShaderRole::Displacement);
     edit_attributes().displacement = id;
 }
 
 void State::do_Atmosphere(Request& request) {
-    const ShaderId id = shader_attribute(request);
+    const ShaderId id = shader_attribute(request, ShaderRole::Atmosphere);
     edit_attributes().atmosphere = id;
 }
 
 void State::do_Interior(Request& request) {
-    const ShaderId id = shader_attribute(request);
+    const ShaderId id = shader_attribute(request, ShaderRole::Interior);
     edit_attributes().interior = id;
 }
 
 void State::do_Exterior(Request& request) {
-    const ShaderId id = shader_attribute(request);
+    const ShaderId id = shader_attribute(request, ShaderRole::Exterior);
     edit_attributes().exterior = id;
 }
 
@@ -144,8 +144,8 @@ void State::do_Matte(Request& request) {
 
 LightId State::add_light(Request& request, bool is_area) {
     Light light;
-    light.shader =
-        add_shader(request.string(0), std::move(request.params), freeze_transform(), request.pos);
+    light.shader = add_shader(request.string(0), std::move(request.params), freeze_transform(),
+                              request.pos, ShaderRole::Light);
     light.handle = request.string(1);
     light.in_camera_space = !blocks_.inside(BlockKind::World);
     light.is_area = is_area;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // State: options (ri.md 6.3 to 6.5, 7.1 to 7.3) and texture-making requests (6.11).
 #include "ribtools/number.h"
-#include "ribtools/search_path.h"
 #include "ribtools/state_impl.h"
+#include "runtime/base/search_path.h"
 
 #include <algorithm>
 
@@ -200,8 +200,8 @@ void State::do_Imager(Request& request) {
     const std::string& name = request.string(0);
     options_.imager = none;
     if (!name.empty() && name != "null") {
-        options_.imager =
-            add_shader(name, std::move(request.params), freeze_transform(), request.pos);
+        options_.imager = add_shader(name, std::move(request.params), freeze_transform(),
+                                     request.pos, ShaderRole::Imager);
     }
 }
 
@@ -320,7 +320,7 @@ void State::set_search_path(const Param& param) {
     static const std::vector<std::string> no_defaults;
     std::vector<std::string> expanded;
     for (const std::string& value : param.strings) {
-        for (std::string& directory : expand_search_path(
+        for (std::string& directory : base::expand_search_path(
                  value, path,
                  defaults == config_.default_paths.end() ? no_defaults : defaults->second)) {
             expanded.push_back(std::move(directory));

@@ -3,6 +3,7 @@
 #include "ribtools/test_util.h"
 
 #include <cmath>
+#include <cstdlib>
 #include <gtest/gtest.h>
 
 namespace {
@@ -187,6 +188,58 @@ TEST(Options, SearchPaths) {
     EXPECT_EQ(r.scene().options.search_paths.at("shader"),
               (std::vector<std::string>{"c", "a", "b", "/std", "/std"}));
     EXPECT_EQ(r.scene().options.search_paths.at("archive"), (std::vector<std::string>{"/x", "y"}));
+}
+
+// Every kind of path knows &, @ and escapes.
+TEST(Options, SearchPathsOfAllKinds) {
+    for (const std::string kind :
+         {"shader", "texture", "archive", "procedural", "display", "resource"}) {
+        rib::Config config;
+        config.default_paths[kind] = {"/std"};
+        const Reading r("Option \"searchpath\" \"" + kind + "\" \"&:mine\" " +
+                            "Option \"searchpath\" \"" + kind +
+                            "\" [\"&:a\\\\:b;~/c\" \"@:x\\\\$y%PERIGEE_NOT_SET%\"] " + world(""),
+                        config);
+        const std::string home = std::getenv("HOME") ? std::getenv("HOME") : "";
+        EXPECT_EQ(r.scene().options.search_paths.at(kind),
+                  (std::vector<std::string>{"/std", "mine", "a:b", home + "/c", "/std", "x$y"}))
+            << kind;
+    }
+}
+
+// A backend that notes which shaders it hears of.
+struct Listener : rib::Backend {
+    std::vector<std::string> heard;
+    void shader_named(const rib::ShaderCall& call, rib::ShaderRole role) override {
+        std::string text = call.name + std::to_string(static_cast<int>(role));
+        for (const std::string& directory : *call.search_path) {
+            text += " " + directory;
+        }
+        heard.push_back(text);
+    }
+    bool render(std::unique_ptr<rib::Scene>) override { return true; }
+    bool make_texture(const rib::TextureRequest&) override { return true; }
+};
+
+TEST(Shaders, AreAnnouncedWithThePathThatHolds) {
+    std::FILE* null = std::fopen("/dev/null", "w");
+    base::Diag diag(null);
+    Listener listener;
+    rib::Config config;
+    config.default_paths["shader"] = {"std"};
+    config.wants_world = [](const rib::Options& o) { return o.frame != 2; };
+    rib::Reader reader(listener, diag, config);
+    (void)reader.read_text(
+        "Imager \"i\" Surface \"s\" "
+        "Option \"searchpath\" \"shader\" \"mine:&\" "
+        "FrameBegin 1 WorldBegin LightSource \"l\" 1 Surface \"s\" Surface \"s\" "
+        "Displacement \"d\" Atmosphere \"null\" WorldEnd FrameEnd "
+        "FrameBegin 2 Surface \"unwanted\" WorldBegin Surface \"unwanted\" "
+        "WorldEnd FrameEnd",
+        "test");
+    EXPECT_EQ(listener.heard, (std::vector<std::string>{"i6 std", "s0 std", "l5 mine std",
+                                                        "s0 mine std", "d1 mine std"}));
+    std::fclose(null);
 }
 
 TEST(Options, CommandLineDefaultsAndOverrides) {

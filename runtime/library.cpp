@@ -1,39 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finding shaders: a name becomes a file on the search path, a compiled object or an .sl compiled
-// into the user's cache, and is remembered whether it was found or not. One lock for all of it:
-// shaders are looked up while a scene is read, not while it is shaded.
+// Shaders of a run. In: names with the search path that held where they were named. Out: loaded
+// objects. Looking for a name is cheap and done at once, in the order of the calls; loading and
+// compiling is a job per file, done once, in the background if it was announced. Messages wait in
+// the record they belong to until somebody asks for the shader: their order is that of find().
 #include "runtime/base/file.h"
-#include "runtime/base/seal.h"
-#include "runtime/base/sha256.h"
+#include "runtime/base/work_queue.h"
 #include "runtime/shader.h"
+#include "runtime/shader_finder.h"
 #include "sl_fingerprint.h"
 
 #include <algorithm>
-#include <cstdlib>
-#include <filesystem>
+#include <atomic>
+#include <condition_variable>
 #include <map>
-#include <sys/stat.h>
-#include <unistd.h>
 
 namespace rt {
 
 namespace {
-
-namespace fs = std::filesystem;
-
-std::string strip_suffix(std::string_view name) {
-    for (const std::string_view suffix : {".sl", ".slo", ".slc", ".slx"}) {
-        if (name.ends_with(suffix)) {
-            return std::string(name.substr(0, name.size() - suffix.size()));
-        }
-    }
-    return std::string(name);
-}
-
-bool is_file(const std::string& path) {
-    struct stat info {};
-    return ::stat(path.c_str(), &info) == 0 && S_ISREG(info.st_mode);
-}
 
 constexpr const char* type_names[] = {"surface", "displacement", "light",
                                       "volume",  "imager",       "transformation"};
@@ -42,212 +25,248 @@ std::string shader_type_text(int type) {
     return type >= 0 && type <= SL_SHADER_transformation ? type_names[type] : "unknown";
 }
 
-} // namespace
-
-std::string default_cache_dir() {
-    const auto variable = [](const char* name) {
-        const char* value = std::getenv(name);
-        return std::string(value ? value : "");
-    };
-    if (const std::string own = variable("PERIGEE_CACHE"); !own.empty()) {
-        return own;
+// Each directory once, the first time counts.
+std::vector<std::string> whole_path(const ShaderLibrary::Config& config,
+                                    ShaderLibrary::Path between) {
+    std::vector<std::string> path;
+    for (const ShaderLibrary::Path part : {ShaderLibrary::Path(config.path_first), between,
+                                           ShaderLibrary::Path(config.search_path)}) {
+        for (const std::string& directory : part) {
+            if (std::find(path.begin(), path.end(), directory) == path.end()) {
+                path.push_back(directory);
+            }
+        }
     }
-    if (const std::string xdg = variable("XDG_CACHE_HOME"); !xdg.empty()) {
-        return xdg + "/perigee";
-    }
-    const std::string home = variable("HOME");
-    return home.empty() ? "" : home + "/.cache/perigee";
+    return path;
 }
 
+} // namespace
+
 struct ShaderLibrary::Impl {
-    Config config;
+    // Messages of work that was done before its turn.
+    struct Said {
+        base::Diag diag{base::Diag::Deferred::Yes};
+    };
+
+    // One file (or member of a package) to be loaded or compiled.
+    struct Job : Said {
+        ShaderPlace place;
+        base::SourcePos pos; // in diag
+        bool is_started = false, is_done = false;
+        const ShaderObject* object = nullptr;
+    };
+
+    // A name on a path, and the job it led to; null: nothing found.
+    struct Name : Said {
+        Job* job = nullptr;
+    };
+
+    Impl(Config config_, StringTable& strings_, base::Diag& diag_)
+        : config(std::move(config_)), strings(strings_), diag(diag_),
+          cache(config.cache_dir, config.cache_bytes), finder(config.trusted, config.trust_all),
+          cancelled([this] { return is_ending || (config.interrupted && config.interrupted()); }),
+          queue(std::max(config.num_threads, 1)) {}
+
+    ~Impl() { stop(); }
+
+    void stop() {
+        is_ending = true;
+        queue.stop();
+        const std::lock_guard lock(mutex);
+        for (auto& [file, job] : jobs) { // those that had not begun never will
+            job.is_done = true;
+        }
+        job_done.notify_all();
+    }
+
+    const Config config;
     StringTable& strings;
     base::Diag& diag;
-    std::mutex mutex;
-    std::map<std::string, std::unique_ptr<ShaderObject>, std::less<>> by_path;
-    std::vector<std::unique_ptr<ShaderObject>> adopted;
-    std::map<std::string, const ShaderObject*, std::less<>>
-        by_name;             // nullptr: known to be missing or broken
-    std::string scratch_dir; // made when there is no cache
+    ShaderCache cache;
+    std::mutex mutex; // of all below but the queue
+    std::condition_variable job_done;
+    ShaderFinder finder;
+    std::map<std::string, std::unique_ptr<ShaderObject>, std::less<>> by_file;
+    std::vector<std::unique_ptr<ShaderObject>> nameless;             // linked in, or in memory
+    std::map<std::string, const ShaderObject*, std::less<>> adopted; // by name of the shader
+    std::map<std::string, Name, std::less<>> names;
+    std::map<std::string, Job, std::less<>> jobs; // by file
+    std::atomic<bool> is_ending{false};
+    const Cancelled cancelled;
+    base::WorkQueue queue; // last: its threads use the rest
 
-    ~Impl() {
-        by_name.clear();
-        by_path.clear();
-        if (!scratch_dir.empty()) {
-            std::error_code ignored;
-            fs::remove_all(scratch_dir, ignored);
+    // --- opening, on any thread, without the mutex
+
+    const ShaderObject* keep(std::string key, std::unique_ptr<ShaderObject> object) {
+        const std::lock_guard lock(mutex);
+        if (key.empty()) {
+            return nameless.emplace_back(std::move(object)).get();
         }
+        return by_file.emplace(std::move(key), std::move(object)).first->second.get();
     }
 
     const ShaderObject* open(const std::string& path, std::string& why) {
-        if (const auto it = by_path.find(path); it != by_path.end()) {
-            return it->second.get();
+        {
+            const std::lock_guard lock(mutex);
+            if (const auto it = by_file.find(path); it != by_file.end()) {
+                return it->second.get();
+            }
         }
         auto object = ShaderObject::open(path, strings, why);
-        const ShaderObject* result = object.get();
+        return object ? keep(path, std::move(object)) : nullptr;
+    }
+
+    const ShaderObject* open_bytes(std::string_view bytes, std::string& why) {
+        auto object = ShaderObject::open_bytes(bytes, strings, why);
+        return object ? keep({}, std::move(object)) : nullptr;
+    }
+
+    const ShaderObject* open_member(const ShaderPlace& place, std::string& why) {
+        const auto bytes = place.package->read(place.member);
+        if (!bytes) {
+            why = "cannot be read";
+            return nullptr;
+        }
+        return open_bytes(*bytes, why);
+    }
+
+    const ShaderObject* open_cached(const std::string& key) {
+        const std::string path = cache.object_path(key);
+        std::string why; // a damaged entry is replaced
+        const ShaderObject* object = cache.is_on() ? open(path, why) : nullptr;
         if (object) {
-            by_path.emplace(path, std::move(object));
-        }
-        return result;
-    }
-
-    // A directory to compile into: the cache, or one that goes with this library.
-    std::string object_dir() {
-        std::error_code error;
-        if (!config.cache_dir.empty()) {
-            fs::create_directories(config.cache_dir, error);
-            if (!error && ::access(config.cache_dir.c_str(), W_OK) == 0) {
-                return config.cache_dir;
-            }
-            diag.report_once("shader cache", base::Severity::Warning, base::Code::System, {},
-                             "shader cache " + config.cache_dir +
-                                 " cannot be written; shaders are compiled for this run only");
-        }
-        if (scratch_dir.empty()) {
-            std::string pattern = (fs::temp_directory_path(error) / "perigee-XXXXXX").string();
-            if (::mkdtemp(pattern.data())) {
-                scratch_dir = pattern;
-            }
-        }
-        return scratch_dir;
-    }
-
-    const ShaderObject* open_source(const std::string& sl_path) {
-        if (!config.compile || !config.cache_key) {
-            diag.report_once("no compiler " + sl_path, base::Severity::Error, base::Code::NoShader,
-                             {}, sl_path + " is not compiled, and this program cannot compile it");
-            return nullptr;
-        }
-        const auto key = config.cache_key(sl_path, diag);
-        const std::string dir = key ? object_dir() : std::string();
-        if (dir.empty()) {
-            return nullptr;
-        }
-        const std::string name = base::sha256_hex(*key);
-        const std::string folder = dir + "/" + name.substr(0, 2);
-        std::error_code error;
-        fs::create_directories(folder, error);
-        const std::string slo_path = folder + "/" + name.substr(2) + ".slo";
-        std::string why;
-        if (is_file(slo_path)) {
-            if (const ShaderObject* object = open(slo_path, why)) {
-                return object;
-            }
-            // A damaged entry is replaced.
-        }
-        if (!config.compile(sl_path, slo_path, diag)) {
-            return nullptr;
-        }
-        const ShaderObject* object = open(slo_path, why);
-        if (!object) {
-            diag.report(base::Severity::Error, base::Code::NoShader, {},
-                        "freshly compiled " + slo_path + " " + why);
+            ShaderCache::mark_used(path);
         }
         return object;
     }
 
-    // Objects may carry another renderer's suffix (slc -o x.slc); that renderer's own objects are
-    // no concern of ours.
-    static std::string canonical(const std::string& directory) {
-        std::error_code error;
-        const auto path =
-            std::filesystem::weakly_canonical(directory.empty() ? "." : directory, error);
-        return error ? directory : path.lexically_normal().string();
-    }
-    static std::string canonical_directory(const std::string& stem) {
-        return canonical(std::filesystem::path(stem).parent_path().string());
-    }
-
-    static std::string object_at(const std::string& stem) {
-        if (is_file(stem + ".slo")) {
-            return stem + ".slo";
+    const ShaderObject* compile(const std::string& source, const std::string& key, Job& job) {
+        const auto bytes = config.compile(source, job.diag, cancelled);
+        if (!bytes) {
+            return nullptr;
         }
-        for (const char* suffix : {".slc", ".slx"}) {
-            const auto bytes = base::read_file(stem + suffix);
-            if (bytes && base::check_seal(*bytes, SL_ABI_FINGERPRINT) != base::SealState::Missing) {
-                return stem + suffix;
-            }
+        std::string why = cache.is_on() ? cache.store(key, *bytes) : "off";
+        if (!why.empty() && cache.is_on()) {
+            job.diag.report_once("shader cache", base::Severity::Warning, base::Code::System, {},
+                                 "shader cache " + cache.directory() +
+                                     " cannot be written; shaders are compiled for this run only");
         }
-        return "";
+        const ShaderObject* object =
+            why.empty() ? open(cache.object_path(key), why) : open_bytes(*bytes, why);
+        if (!object) { // evicted or damaged meanwhile
+            object = open_bytes(*bytes, why);
+        }
+        if (!object) {
+            job.diag.report(base::Severity::Error, base::Code::NoShader, {},
+                            "the object just compiled from " + source + " " + why);
+        }
+        return object;
     }
 
-    [[nodiscard]] bool is_trusted(const std::string& stem) const {
-        const std::string directory = canonical_directory(stem);
-        return config.trust_all ||
-               std::any_of(config.trusted.begin(), config.trusted.end(),
-                           [&](const std::string& t) { return canonical(t) == directory; });
+    const ShaderObject* open_source(const std::string& source, Job& job) {
+        if (!config.compile || !config.cache_key) {
+            job.diag.report_once("no compiler " + source, base::Severity::Error,
+                                 base::Code::NoShader, {},
+                                 source + " is not compiled, and this program cannot compile it");
+            return nullptr;
+        }
+        const auto key = config.cache_key(source, job.diag, cancelled);
+        if (!key) {
+            return nullptr;
+        }
+        if (const ShaderObject* object = open_cached(*key)) {
+            return object;
+        }
+        if (!cache.is_on()) {
+            return compile(source, *key, job);
+        }
+        const base::FileLock lock = cache.lock(*key, cancelled);
+        const ShaderObject* object = open_cached(*key); // whoever held the lock has made it
+        return object || cancelled() ? object : compile(source, *key, job);
     }
 
-    // In one directory (or at a path without suffix): the object, else its source.
-    const ShaderObject* open_at(const std::string& stem, base::SourcePos pos, bool& exists) {
-        std::string object_path = object_at(stem);
-        if (!object_path.empty() && !is_trusted(stem)) {
-            diag.report_once("untrusted " + object_path, base::Severity::Warning,
-                             base::Code::NoShader, pos,
-                             object_path + " is not loaded: compiled shaders come only from "
-                                           "directories given by -shaders or SHADERS "
-                                           "(--allow-programs trusts the RIB)");
-            object_path.clear();
+    const ShaderObject* open_place(Job& job) {
+        const ShaderPlace& place = job.place;
+        if (place.object.empty() && !place.package) {
+            return open_source(place.source, job);
         }
-        const std::string source_path = stem + ".sl";
-        const bool has_source = is_file(source_path);
-        if (!object_path.empty()) {
-            exists = true;
-            std::string why;
-            if (const ShaderObject* object = open(object_path, why)) {
-                return object;
-            }
-            const bool rescue = has_source && config.compile;
-            diag.report_once("slo " + object_path,
-                             rescue ? base::Severity::Warning : base::Severity::Error,
-                             base::Code::NoShader, pos,
-                             object_path + " " + why +
-                                 (rescue ? "; " + source_path + " is compiled instead" : ""));
-            return rescue ? open_source(source_path) : nullptr;
+        std::string why;
+        const std::string what =
+            place.package ? place.package->path() + "(" + place.member + ")" : place.object;
+        const ShaderObject* object =
+            place.package ? open_member(place, why) : open(place.object, why);
+        if (object) {
+            return object;
         }
-        if (has_source) {
-            exists = true;
-            return open_source(source_path);
-        }
-        return nullptr;
+        const bool rescue = !place.source.empty() && config.compile;
+        job.diag.report(
+            rescue ? base::Severity::Warning : base::Severity::Error, base::Code::NoShader, job.pos,
+            what + " " + why + (rescue ? "; " + place.source + " is compiled instead" : ""));
+        return rescue ? open_source(place.source, job) : nullptr;
     }
 
-    const ShaderObject* search(const std::string& stem, base::SourcePos pos) {
-        bool exists = false;
-        const ShaderObject* found = nullptr;
-        if (stem.find('/') != std::string::npos) {
-            found = open_at(stem, pos, exists);
-        } else {
-            for (const std::string& dir : config.search_path) {
-                found = open_at((dir.empty() ? "." : dir) + "/" + stem, pos, exists);
-                if (exists) {
-                    break;
-                }
+    void run(Job& job) {
+        {
+            const std::lock_guard lock(mutex);
+            if (job.is_started) {
+                return;
             }
+            job.is_started = true;
         }
-        if (!found && !exists) {
-            std::string path;
-            for (const std::string& dir : config.search_path) {
-                path += (path.empty() ? "" : ":") + dir;
-            }
-            diag.report(base::Severity::Error, base::Code::NoShader, pos,
-                        "no shader \"" + stem + "\" (" + stem + ".slo or " + stem + ".sl)" +
-                            (stem.find('/') == std::string::npos ? " on the path " + path : ""));
+        const ShaderObject* object = cancelled() ? nullptr : open_place(job);
+        const std::lock_guard lock(mutex);
+        job.object = object;
+        job.is_done = true;
+        job_done.notify_all();
+    }
+
+    // --- names, with the mutex held
+
+    Job* job_for(ShaderPlace place, const Name& name, base::SourcePos pos, bool& is_new) {
+        std::string key = place.package           ? place.package->path() + "\n" + place.member
+                          : !place.object.empty() ? place.object
+                                                  : place.source;
+        const auto [it, inserted] = jobs.try_emplace(std::move(key));
+        is_new = inserted;
+        Job& job = it->second;
+        if (is_new) {
+            job.place = std::move(place);
+            job.pos = job.diag.place_from(name.diag, pos);
         }
-        return found;
+        return &job;
+    }
+
+    // The record of a name; new_job is a job that nobody has been given yet.
+    Name& look_up(const std::string& stem, base::SourcePos pos, Path path, Job*& new_job) {
+        std::string key = stem;
+        for (const std::string& directory : path) {
+            key += '\n';
+            key += directory;
+        }
+        const auto [it, is_new] = names.try_emplace(std::move(key));
+        Name& name = it->second;
+        if (is_new) {
+            const base::SourcePos here = name.diag.place_from(diag, pos);
+            ShaderPlace place = finder.find(stem, whole_path(config, path), here, name.diag);
+            bool is_new_job = false;
+            name.job =
+                place.is_empty() ? nullptr : job_for(std::move(place), name, here, is_new_job);
+            new_job = is_new_job ? name.job : nullptr;
+        }
+        return name;
     }
 };
 
 ShaderLibrary::ShaderLibrary(Config config, StringTable& strings, base::Diag& diag)
-    : impl_(new Impl{std::move(config), strings, diag, {}, {}, {}, {}, {}}), strings_(strings) {}
+    : impl_(new Impl(std::move(config), strings, diag)), strings_(strings) {}
 
 ShaderLibrary::~ShaderLibrary() = default;
 
 const ShaderObject* ShaderLibrary::find(std::string_view name, sl_shader_type wanted,
-                                        base::SourcePos pos) {
-    const ShaderObject* found = find_any(name, pos);
+                                        base::SourcePos pos, Path path) {
+    const ShaderObject* found = find_any(name, pos, path);
     if (found && found->object().type != wanted) {
-        const std::string stem = strip_suffix(name);
+        const std::string stem = shader_stem(name);
         impl_->diag.report_once("shader type " + stem + shader_type_text(wanted),
                                 base::Severity::Error, base::Code::NoShader, pos,
                                 "shader \"" + stem + "\" is a " +
@@ -258,18 +277,48 @@ const ShaderObject* ShaderLibrary::find(std::string_view name, sl_shader_type wa
     return found;
 }
 
-const ShaderObject* ShaderLibrary::find_any(std::string_view name, base::SourcePos pos) {
-    const std::string stem = strip_suffix(name);
-    const std::lock_guard lock(impl_->mutex);
-    auto it = impl_->by_name.find(stem);
-    if (it == impl_->by_name.end()) {
-        it = impl_->by_name.emplace(stem, impl_->search(stem, pos)).first;
+const ShaderObject* ShaderLibrary::find_any(std::string_view name, base::SourcePos pos, Path path) {
+    const std::string stem = shader_stem(name);
+    std::unique_lock lock(impl_->mutex);
+    if (const auto it = impl_->adopted.find(stem); it != impl_->adopted.end()) {
+        return it->second;
     }
-    return it->second;
+    Impl::Job* new_job = nullptr;
+    Impl::Name& record = impl_->look_up(stem, pos, path, new_job);
+    if (new_job) {
+        lock.unlock();
+        impl_->run(*new_job);
+        lock.lock();
+    }
+    Impl::Job* job = record.job;
+    if (job) {
+        impl_->job_done.wait(lock, [job] { return job->is_done; });
+    }
+    record.diag.deliver(impl_->diag);
+    if (job) {
+        job->diag.deliver(impl_->diag);
+    }
+    return job ? job->object : nullptr;
+}
+
+void ShaderLibrary::prefetch(std::string_view name, base::SourcePos pos, Path path) {
+    const std::string stem = shader_stem(name);
+    const std::lock_guard lock(impl_->mutex);
+    if (impl_->adopted.contains(stem)) {
+        return;
+    }
+    Impl::Job* new_job = nullptr;
+    impl_->look_up(stem, pos, path, new_job);
+    if (new_job) {
+        impl_->queue.add([impl = impl_.get(), new_job] { impl->run(*new_job); });
+    }
+}
+
+void ShaderLibrary::stop() {
+    impl_->stop();
 }
 
 const ShaderObject* ShaderLibrary::load(const std::string& slo_path, base::SourcePos pos) {
-    const std::lock_guard lock(impl_->mutex);
     std::string why;
     const ShaderObject* object = impl_->open(slo_path, why);
     if (!object) {
@@ -279,7 +328,13 @@ const ShaderObject* ShaderLibrary::load(const std::string& slo_path, base::Sourc
 }
 
 const ShaderObject* ShaderLibrary::adopt(const sl_object& object) {
-    const std::lock_guard lock(impl_->mutex);
+    {
+        const std::lock_guard lock(impl_->mutex);
+        const auto it = impl_->adopted.find(object.name ? object.name : "");
+        if (it != impl_->adopted.end() && &it->second->object() == &object) {
+            return it->second;
+        }
+    }
     std::string why;
     auto shader = ShaderObject::adopt(object, strings_, why);
     if (!shader) {
@@ -287,9 +342,10 @@ const ShaderObject* ShaderLibrary::adopt(const sl_object& object) {
                            "built-in shader object " + why);
         return nullptr;
     }
-    const ShaderObject* adopted = impl_->adopted.emplace_back(std::move(shader)).get();
-    impl_->by_name.insert_or_assign(object.name, adopted);
-    return adopted;
+    const ShaderObject* kept = impl_->keep({}, std::move(shader));
+    const std::lock_guard lock(impl_->mutex);
+    impl_->adopted.insert_or_assign(object.name, kept);
+    return kept;
 }
 
 } // namespace rt

@@ -2,14 +2,17 @@
 // One .slo file becomes one ShaderObject. The only caller of dlopen on files that users name.
 // The seal (base/seal.h) is checked on the bytes of the file first: a wrong fingerprint, a
 // truncated or a damaged file never reaches the dynamic linker. The descriptor's own fingerprint
-// and counts are checked after it.
+// and counts are checked after it. Objects that are no files (members of packages, results that no
+// cache keeps) are mapped from anonymous memory.
 #include "runtime/base/file.h"
 #include "runtime/base/seal.h"
 #include "runtime/shader.h"
 #include "sl_fingerprint.h"
 
+#include <cerrno>
 #include <cstring>
 #include <dlfcn.h>
+#include <sys/mman.h>
 
 namespace rt {
 
@@ -39,14 +42,10 @@ const sl_variant* best_variant(const sl_object& object) {
 }
 
 // Empty: sealed well, and `content` names what it holds.
-std::string why_not_sealed(const std::string& path, std::string& content) {
-    const auto bytes = base::read_file(path);
-    if (!bytes) {
-        return "cannot be read";
-    }
-    switch (base::check_seal(*bytes, SL_ABI_FINGERPRINT)) {
+std::string why_not_sealed(std::string_view bytes, std::string& content) {
+    switch (base::check_seal(bytes, SL_ABI_FINGERPRINT)) {
     case base::SealState::Good:
-        content = base::sealed_hash(*bytes);
+        content = base::sealed_hash(bytes);
         return {};
     case base::SealState::Missing:
         return "is no shader object of slc, or is truncated";
@@ -69,32 +68,63 @@ bool plausible(const sl_object& object) {
            counted(object.num_variants, object.variants);
 }
 
+// Bytes as a file without a name. The dynamic linker knows objects by the path they were opened
+// with, here /proc/self/fd/N: the descriptor stays open as long as the object, so that no other one
+// gets its number.
+base::Descriptor memory_file(std::string_view bytes, std::string& why) {
+    base::Descriptor file(::memfd_create("shader", MFD_CLOEXEC));
+    if (!file.is_open() || !base::write_all(file.get(), bytes)) {
+        why = std::string("cannot be put into memory: ") + std::strerror(errno);
+        file.reset();
+    }
+    return file;
+}
+
 } // namespace
 
 std::unique_ptr<ShaderObject> ShaderObject::open(const std::string& slo_path, StringTable& strings,
                                                  std::string& why) {
+    const auto bytes = base::read_file(slo_path);
     std::string content;
-    why = why_not_sealed(slo_path, content);
+    why = bytes ? why_not_sealed(*bytes, content) : "cannot be read";
     if (!why.empty()) {
         return nullptr;
     }
-    // dlopen searches the system's libraries for names without a slash.
-    const std::string file = slo_path.find('/') == std::string::npos ? "./" + slo_path : slo_path;
     std::unique_ptr<ShaderObject> shader(new ShaderObject);
     shader->content_ = std::move(content);
-    shader->handle_ = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-    if (!shader->handle_) {
+    // dlopen searches the system's libraries for names without a slash.
+    return shader->link(slo_path.find('/') == std::string::npos ? "./" + slo_path : slo_path,
+                        strings, why)
+               ? std::move(shader)
+               : nullptr;
+}
+
+std::unique_ptr<ShaderObject> ShaderObject::open_bytes(std::string_view bytes, StringTable& strings,
+                                                       std::string& why) {
+    std::unique_ptr<ShaderObject> shader(new ShaderObject);
+    why = why_not_sealed(bytes, shader->content_);
+    if (why.empty()) {
+        shader->memory_ = memory_file(bytes, why);
+    }
+    return why.empty() && shader->link("/proc/self/fd/" + std::to_string(shader->memory_.get()),
+                                       strings, why)
+               ? std::move(shader)
+               : nullptr;
+}
+
+bool ShaderObject::link(const std::string& file, StringTable& strings, std::string& why) {
+    handle_ = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (!handle_) {
         const char* reason = ::dlerror();
         why = std::string("cannot be loaded: ") + (reason ? reason : "unknown reason");
-        return nullptr;
+        return false;
     }
-    const auto* object =
-        static_cast<const sl_object*>(::dlsym(shader->handle_, "sl_shader_object"));
+    const auto* object = static_cast<const sl_object*>(::dlsym(handle_, "sl_shader_object"));
     if (!object) {
         why = "exports no sl_shader_object";
-        return nullptr;
+        return false;
     }
-    return shader->take(*object, strings, why) ? std::move(shader) : nullptr;
+    return take(*object, strings, why);
 }
 
 std::unique_ptr<ShaderObject> ShaderObject::adopt(const sl_object& object, StringTable& strings,
@@ -129,6 +159,8 @@ ShaderObject::~ShaderObject() {
     if (handle_) {
         ::dlclose(handle_);
     }
+#else
+    memory_.release(); // its number must not be used again
 #endif
 }
 

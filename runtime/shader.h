@@ -3,12 +3,14 @@
 // bound parameters.
 //
 // ShaderLibrary owns objects for a whole run and is safe from any thread; objects stay loaded until
-// it goes. Where only `name.sl` is found it is compiled into the content-addressed user cache
-// through the compile function it was given (the runtime does not know slc).
+// it goes. Where only `name.sl` is found it is compiled, once, through the compile function it was
+// given (the runtime does not know slc), and kept in the user's cache.
 #pragma once
 
 #include "runtime/abi/sl_abi.h"
+#include "runtime/base/descriptor.h"
 #include "runtime/base/diag.h"
+#include "runtime/shader_cache.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -50,6 +52,9 @@ public:
     // its seal has been checked.
     static std::unique_ptr<ShaderObject> open(const std::string& slo_path, StringTable& strings,
                                               std::string& why);
+    // The same for an object that is no file.
+    static std::unique_ptr<ShaderObject> open_bytes(std::string_view bytes, StringTable& strings,
+                                                    std::string& why);
     // The same for an object linked into the program.
     static std::unique_ptr<ShaderObject> adopt(const sl_object& object, StringTable& strings,
                                                std::string& why);
@@ -67,44 +72,65 @@ public:
 
 private:
     ShaderObject() = default;
+    bool link(const std::string& file, StringTable& strings, std::string& why);
     bool take(const sl_object& object, StringTable& strings, std::string& why);
 
-    void* handle_ = nullptr; // null for an adopted object
+    base::Descriptor memory_; // of open_bytes
+    void* handle_ = nullptr;  // null for an adopted object
     const sl_object* object_ = nullptr;
     const sl_variant* variant_ = nullptr;
     std::vector<sl_string> strings_;
     std::string content_;
 };
 
+// Ends a compilation early when it returns true; may be empty.
+using Cancelled = std::function<bool()>;
+
 class ShaderLibrary {
 public:
     struct Config {
-        std::vector<std::string> search_path; // directories, in order
-        // Directories whose compiled objects may be loaded: objects are machine code, so they come
+        // Places to look in before and after those of a call: directories, or package files
+        // (docs/shader_cache.md).
+        std::vector<std::string> path_first, search_path;
+        // Places whose compiled objects may be loaded: objects are machine code, so they come
         // only from places the user named, never from a path a RIB sets. Sources are compiled
         // from anywhere.
         std::vector<std::string> trusted;
         bool trust_all = false;
-        std::string cache_dir; // see default_cache_dir(); "" = compile to a temporary file
-        // Compiles an .sl file into an .slo at the given path; false after reporting why not.
-        std::function<bool(const std::string& sl_path, const std::string& slo_path, base::Diag&)>
+        std::string cache_dir; // see default_cache_dir(); "" = objects live as long as the library
+        std::uint64_t cache_bytes = default_cache_bytes;
+        int num_threads = 1; // that compile at a time in the background
+        Cancelled interrupted;
+        // Compiles an .sl file: the sealed object, or nullopt after reporting why not.
+        std::function<std::optional<std::string>(const std::string& sl_path, base::Diag&,
+                                                 const Cancelled&)>
             compile;
-        // Identifies compiler, flags and tables for the cache key (preprocessed text is added to
-        // it).
-        std::function<std::optional<std::string>(const std::string& sl_path, base::Diag&)>
+        // A hash of everything that decides the bytes of that object.
+        std::function<std::optional<std::string>(const std::string& sl_path, base::Diag&,
+                                                 const Cancelled&)>
             cache_key;
     };
+    using Path = std::span<const std::string>;
 
     ShaderLibrary(Config config, StringTable& strings, base::Diag& diag);
     ~ShaderLibrary();
 
     // By the name of a shader call: path components bypass the search, a suffix .sl .slo .slc .slx
-    // is stripped. nullptr after one message when missing, broken, of another ABI, or of another
-    // type than wanted.
-    const ShaderObject* find(std::string_view name, sl_shader_type wanted, base::SourcePos pos);
+    // is stripped; `path` is looked through between path_first and search_path. nullptr after one
+    // message when missing, broken, of another ABI, or of another type than wanted.
+    const ShaderObject* find(std::string_view name, sl_shader_type wanted, base::SourcePos pos,
+                             Path path = {});
 
     // The same for a shader of any type.
-    const ShaderObject* find_any(std::string_view name, base::SourcePos pos);
+    const ShaderObject* find_any(std::string_view name, base::SourcePos pos, Path path = {});
+
+    // This shader will be asked for: it is looked for now and loaded or compiled in the background.
+    // What there is to say about it is said when it is asked for, so the order of messages is the
+    // order of find(), whatever is finished first. Messages give the first place that named it.
+    void prefetch(std::string_view name, base::SourcePos pos, Path path = {});
+
+    // Ends compilations nobody waits for and removes what they left. Nothing is found afterwards.
+    void stop();
 
     // Loads one object file; nullptr and a message on failure. Checks the fingerprint before
     // anything else.
@@ -160,11 +186,6 @@ private:
     std::vector<std::byte> params_;
     std::vector<std::uint8_t> bound_;
 };
-
-// Where compiled shaders are kept between runs: $PERIGEE_CACHE, else $XDG_CACHE_HOME/perigee, else
-// ~/.cache/perigee;
-// "" when there is no place for it.
-[[nodiscard]] std::string default_cache_dir();
 
 // "float[3]", "color" ...: how messages and slctell name a type.
 [[nodiscard]] std::string type_text(int type, int array_length);

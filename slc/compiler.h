@@ -8,6 +8,7 @@
 #include "runtime/base/diag.h"
 #include "slc/ir.h"
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -20,9 +21,10 @@ class Messages;
 struct CompileOptions {
     std::vector<std::string> include_dirs; // -I, in order
     std::vector<std::string> defines;      // -D, "NAME" or "NAME=value"
-    std::string preprocessor;     // C compiler to run as preprocessor; "" = cc, gcc or clang
-    bool is_preprocessed = false; // the text has been through a preprocessor; none is run
-    bool optimise = true;         // false: only the passes the emitter cannot do without
+    std::string preprocessor;        // C compiler to run as preprocessor; "" = cc, gcc or clang
+    bool is_preprocessed = false;    // the text has been through a preprocessor; none is run
+    bool optimise = true;            // false: only the passes the emitter cannot do without
+    std::function<bool()> cancelled; // true: ends the programs that run, without a message
 };
 
 // All shaders of one source file.

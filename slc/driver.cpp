@@ -6,7 +6,9 @@
 #include "sl_fingerprint.h"
 #include "slc/emit_c.h"
 #include "slc/ir_text.h"
+#include "slc/key_index.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <unistd.h>
 
@@ -41,6 +43,28 @@ EmitOptions emit_options(const Program& plain, int lanes, const ObjectOptions& o
     return emit;
 }
 
+// Everything but the source that decides the bytes of an object.
+std::string settings_text(const Toolchain& tools, const ObjectOptions& options) {
+    std::string text = SL_ABI_FINGERPRINT "\n" + toolchain_identity(tools, options.flags);
+    for (const int lanes : widths(options)) {
+        text += "\nlanes " + std::to_string(lanes);
+    }
+    for (const std::string& define : options.front.defines) {
+        text += "\n-D" + define;
+    }
+    return text + (options.front.optimise ? "\noptimised" : "\nplain");
+}
+
+// The preprocessor would give the same text anywhere, any day. "%:" and "??=" also spell the sign
+// that starts a directive.
+bool stands_alone(std::string_view text) {
+    constexpr std::string_view words[] = {"include",  "%:",       "??",
+                                          "__DATE__", "__TIME__", "__TIMESTAMP__"};
+    return std::none_of(std::begin(words), std::end(words), [&](std::string_view word) {
+        return text.find(word) != std::string_view::npos;
+    });
+}
+
 } // namespace
 
 std::string c_text(const Program& program, int lanes, const ObjectOptions& options) {
@@ -48,13 +72,10 @@ std::string c_text(const Program& program, int lanes, const ObjectOptions& optio
     return emit_c(plain, analyse(plain), emit_options(plain, lanes, options));
 }
 
-Outcome build_object(const Program& program, const ObjectOptions& options,
-                     const std::string& slo_path, base::Diag& diag) {
-    // An object from before must not pass for the result of this compilation.
-    ::unlink(slo_path.c_str());
+BuiltObject build_object(const Program& program, const ObjectOptions& options, base::Diag& diag) {
     const auto tools = find_toolchain(options.front.preprocessor, diag);
     if (!tools) {
-        return Outcome::BadEnvironment;
+        return {};
     }
     const Program plain = with_plain_files(program);
     const Facts facts = analyse(plain);
@@ -62,22 +83,21 @@ Outcome build_object(const Program& program, const ObjectOptions& options,
     for (const int lanes : widths(options)) {
         variants.push_back({lanes, emit_c(plain, facts, emit_options(plain, lanes, options))});
     }
-    return build_shared_object(*tools, variants, options.flags, slo_path, diag)
-               ? Outcome::Done
-               : Outcome::BadEnvironment;
+    auto bytes = build_shared_object(*tools, variants, options.flags, program.name,
+                                     options.front.cancelled, diag);
+    return bytes ? BuiltObject{Outcome::Done, std::move(*bytes)} : BuiltObject{};
 }
 
-bool compile_to_object(const std::string& sl_path, const std::string& slo_path,
-                       const ObjectOptions& options, base::Diag& diag) {
-    ::unlink(slo_path.c_str());
+std::optional<std::string> compile_to_bytes(const std::string& sl_path,
+                                            const ObjectOptions& options, base::Diag& diag) {
     const Unit unit = compile_file(sl_path, options.front, diag);
     if (!unit.ok()) {
-        return false;
+        return std::nullopt;
     }
     if (unit.programs.empty()) {
         diag.report(base::Severity::Error, base::Code::NoShader, {},
                     sl_path + " defines no shader");
-        return false;
+        return std::nullopt;
     }
     const std::string stem = std::filesystem::path(sl_path).stem().string();
     const Program* chosen = &unit.programs.front();
@@ -91,7 +111,19 @@ bool compile_to_object(const std::string& sl_path, const std::string& slo_path,
                     sl_path + " holds several shaders, none named " + stem + "; " + chosen->name +
                         " is used");
     }
-    return build_object(*chosen, options, slo_path, diag) == Outcome::Done;
+    BuiltObject built = build_object(*chosen, options, diag);
+    return built.outcome == Outcome::Done ? std::optional(std::move(built.bytes)) : std::nullopt;
+}
+
+bool compile_to_object(const std::string& sl_path, const std::string& slo_path,
+                       const ObjectOptions& options, base::Diag& diag) {
+    ::unlink(slo_path.c_str()); // must not pass for the result of this compilation
+    const auto bytes = compile_to_bytes(sl_path, options, diag);
+    const std::string error = bytes ? base::write_file_atomically(slo_path, *bytes) : "";
+    if (!error.empty()) {
+        diag.report(base::Severity::Error, base::Code::NoFile, {}, error);
+    }
+    return bytes && error.empty();
 }
 
 std::optional<std::string> object_key(const std::string& sl_path, const ObjectOptions& options,
@@ -105,27 +137,39 @@ std::optional<std::string> object_key(const std::string& sl_path, const ObjectOp
         diag.report(base::Severity::Error, base::Code::NoFile, {}, "cannot read " + sl_path);
         return std::nullopt;
     }
-    // "%:" and "??=" also spell the sign that starts a directive.
-    const bool may_include = text->find("include") != std::string::npos ||
-                             text->find("%:") != std::string::npos ||
-                             text->find("??") != std::string::npos;
-    if (may_include) {
-        text = preprocess_file(sl_path, options.front, diag);
-        if (!text) {
-            return std::nullopt;
+    const std::string settings = settings_text(*tools, options);
+    const auto key_of = [&](std::string_view source) {
+        base::Sha256 hash;
+        return hash.add_field(source).add_field(base_name(sl_path)).add_field(settings).hex();
+    };
+    if (stands_alone(*text)) {
+        return key_of(*text);
+    }
+    std::error_code error;
+    base::Sha256 request_hash;
+    request_hash.add_field(std::filesystem::absolute(sl_path, error).string()).add_field(settings);
+    for (const std::string& directory : options.front.include_dirs) {
+        request_hash.add_field(std::filesystem::absolute(directory, error).string());
+    }
+    const std::string request = request_hash.hex();
+    const KeyIndex index(options.index_dir);
+    if (!options.index_dir.empty()) {
+        if (auto key = index.find(request)) {
+            return key;
         }
     }
-    base::Sha256 hash;
-    hash.add_field(*text).add_field(base_name(sl_path));
-    hash.add_field(SL_ABI_FINGERPRINT).add_field(toolchain_identity(*tools, options.flags));
-    for (const int lanes : widths(options)) {
-        hash.add_field(std::to_string(lanes));
+    text = preprocess_file(sl_path, options.front, diag);
+    if (!text) {
+        return std::nullopt;
     }
-    for (const std::string& define : options.front.defines) {
-        hash.add_field("-D" + define);
+    std::string key = key_of(without_directories(*text));
+    if (!options.index_dir.empty()) {
+        const Inclusions made_from = inclusions(*text, sl_path, options.front.include_dirs);
+        if (made_from.is_certain) {
+            index.store(request, key, made_from.files, made_from.missing);
+        }
     }
-    hash.add_field(options.front.optimise ? "optimised" : "plain");
-    return hash.hex();
+    return key;
 }
 
 } // namespace slc

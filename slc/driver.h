@@ -16,6 +16,7 @@ struct ObjectOptions {
     CompileOptions front;
     CompileFlags flags;
     bool native_only = false; // only the variant this processor runs best
+    std::string index_dir;    // where object_key remembers (key_index.h); "" = nowhere
 };
 
 enum class Outcome { Done, BadInput, BadEnvironment }; // slc exits with 0, 1, 3
@@ -23,18 +24,25 @@ enum class Outcome { Done, BadInput, BadEnvironment }; // slc exits with 0, 1, 3
 // The C text of one variant of a program, as it would be compiled.
 [[nodiscard]] std::string c_text(const Program& program, int lanes, const ObjectOptions& options);
 
-// One program into one object.
-[[nodiscard]] Outcome build_object(const Program& program, const ObjectOptions& options,
-                                   const std::string& slo_path, base::Diag& diag);
+// One program into one sealed object; the bytes are empty unless it is Done.
+struct BuiltObject {
+    Outcome outcome = Outcome::BadEnvironment;
+    std::string bytes;
+};
+[[nodiscard]] BuiltObject build_object(const Program& program, const ObjectOptions& options,
+                                       base::Diag& diag);
 
-// The shader of a source file into an object at slo_path: the one named like the file, or the only
-// one.
+// The shader of a source file: the one named like the file, or the only one. nullopt after
+// messages, or without any if it was cancelled.
+[[nodiscard]] std::optional<std::string>
+compile_to_bytes(const std::string& sl_path, const ObjectOptions& options, base::Diag& diag);
+// The same into a file that appears complete or not at all.
 [[nodiscard]] bool compile_to_object(const std::string& sl_path, const std::string& slo_path,
                                      const ObjectOptions& options, base::Diag& diag);
 
-// Identifies what compile_to_object would make: preprocessed text, tables, this compiler, the C
+// Identifies what compile_to_bytes would make: preprocessed text, tables, this compiler, the C
 // compiler, flags. nullopt after messages. Sources that include nothing are not preprocessed for
-// it.
+// it; for others the answer is remembered below index_dir.
 [[nodiscard]] std::optional<std::string> object_key(const std::string& sl_path,
                                                     const ObjectOptions& options, base::Diag& diag);
 

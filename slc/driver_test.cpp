@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // From SL text to loaded objects: the library and its cache, damaged objects, reproducible bytes,
 // the programs slc and slctell from outside.
+#include "runtime/base/ar_file.h"
 #include "runtime/base/file.h"
 #include "runtime/base/seal.h"
 #include "sl_fingerprint.h"
@@ -8,6 +9,7 @@
 #include "slc/emit_runner.h"
 #include "slc/process.h"
 
+#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -30,7 +32,7 @@ void write(const std::string& path, const std::string& text) {
 
 class Driver : public ::testing::Test {
 protected:
-    ScratchDir dir;
+    const base::TempDir dir{"slc-test"};
     base::Diag diag{std::tmpfile()};
     rt::StringTable strings;
     ObjectOptions native = [] {
@@ -42,24 +44,26 @@ protected:
 
     [[nodiscard]] std::string in(const std::string& name) const { return dir.path() + "/" + name; }
 
-    rt::ShaderLibrary::Config config(int* num_compiled = nullptr) {
+    rt::ShaderLibrary::Config config(std::atomic<int>* num_compiled = nullptr) {
         rt::ShaderLibrary::Config c;
         c.search_path = {dir.path()};
         c.trusted = {dir.path()};
         c.cache_dir = in("cache");
-        c.compile = [this, num_compiled](const std::string& sl, const std::string& slo,
-                                         base::Diag& d) {
+        c.compile = [this, num_compiled](const std::string& sl, base::Diag& d,
+                                         const rt::Cancelled& cancelled) {
             *(num_compiled ? num_compiled : &ignored_) += 1;
-            return compile_to_object(sl, slo, native, d);
+            ObjectOptions options = native;
+            options.front.cancelled = cancelled;
+            return compile_to_bytes(sl, options, d);
         };
-        c.cache_key = [this](const std::string& sl, base::Diag& d) {
+        c.cache_key = [this](const std::string& sl, base::Diag& d, const rt::Cancelled&) {
             return object_key(sl, native, d);
         };
         return c;
     }
 
 private:
-    int ignored_ = 0;
+    std::atomic<int> ignored_ = 0;
 };
 
 TEST_F(Driver, ObjectsLoadOnlyFromTrustedDirectories) {
@@ -81,7 +85,7 @@ TEST_F(Driver, ObjectsLoadOnlyFromTrustedDirectories) {
 
 TEST_F(Driver, SourceIsCompiledOnceIntoTheCache) {
     write(in("matte.sl"), matte_text);
-    int num_compiled = 0;
+    std::atomic<int> num_compiled = 0;
     for (int run = 0; run < 2; ++run) {
         rt::ShaderLibrary library(config(&num_compiled), strings, diag);
         const rt::ShaderObject* shader = library.find("matte.slo", SL_SHADER_surface, {});
@@ -101,7 +105,7 @@ TEST_F(Driver, SourceIsCompiledOnceIntoTheCache) {
 
 TEST_F(Driver, DamagedCacheEntryIsReplaced) {
     write(in("matte.sl"), matte_text);
-    int num_compiled = 0;
+    std::atomic<int> num_compiled = 0;
     {
         rt::ShaderLibrary library(config(&num_compiled), strings, diag);
         ASSERT_NE(library.find("matte", SL_SHADER_surface, {}), nullptr);
@@ -201,6 +205,155 @@ TEST_F(Driver, BrokenObjectBesideItsSourceIsCompiledAnew) {
     EXPECT_NE(library.find("matte", SL_SHADER_surface, {}), nullptr);
     EXPECT_EQ(diag.count(base::Severity::Warning), 1U);
     EXPECT_FALSE(diag.had_errors());
+}
+
+// --- announced ahead, packages, places
+
+TEST_F(Driver, AnnouncedShadersAreCompiledOnceAndToldInOrder) {
+    constexpr int num_shaders = 6;
+    for (int i = 0; i < num_shaders; ++i) {
+        const std::string name = "s" + std::to_string(i);
+        write(in(name + ".sl"), i % 2 == 0
+                                    ? "surface " + name + "() { Ci = " + std::to_string(i) + "; }\n"
+                                    : "surface " + name + "() { Ci = nothing; }\n");
+    }
+    std::vector<std::string> said[3];
+    for (int threads = 0; threads < 3; ++threads) {
+        std::FILE* out = std::tmpfile();
+        base::Diag here(out);
+        std::atomic<int> num_compiled = 0;
+        auto c = config(&num_compiled);
+        c.cache_dir = in("cache" + std::to_string(threads));
+        c.num_threads = std::max(threads, 1);
+        rt::ShaderLibrary library(c, strings, here);
+        const base::SourcePos pos{here.file_id("scene.rib"), 7, 1};
+        for (int i = 0; threads > 0 && i < 3 * num_shaders; ++i) { // three calls of each
+            library.prefetch("s" + std::to_string(i % num_shaders), pos);
+        }
+        library.prefetch("absent", pos);
+        EXPECT_TRUE(here.messages().empty()) << "nobody has asked yet";
+        for (int i = num_shaders - 1; i >= 0; --i) {
+            const bool found = library.find("s" + std::to_string(i), SL_SHADER_surface, pos);
+            EXPECT_EQ(found, i % 2 == 0) << i;
+        }
+        EXPECT_EQ(library.find("absent", SL_SHADER_surface, pos), nullptr);
+        EXPECT_EQ(num_compiled, num_shaders);
+        said[threads] = here.messages();
+        std::fclose(out);
+    }
+    EXPECT_EQ(said[0], said[1]);
+    EXPECT_EQ(said[0], said[2]);
+    EXPECT_EQ(said[0].size(), 4U);
+}
+
+TEST_F(Driver, TheSameFileByTwoPathsIsCompiledOnce) {
+    write(in("matte.sl"), matte_text);
+    write(in("broken.sl"), "surface broken() { Ci = nothing; }\n");
+    std::atomic<int> num_compiled = 0;
+    rt::ShaderLibrary library(config(&num_compiled), strings, diag);
+    const std::vector<std::string> other = {in("no-such"), dir.path()};
+    EXPECT_EQ(library.find("matte", SL_SHADER_surface, {}),
+              library.find("matte", SL_SHADER_surface, {}, other));
+    EXPECT_EQ(library.find("broken", SL_SHADER_surface, {}), nullptr);
+    const auto errors = diag.count(base::Severity::Error);
+    EXPECT_EQ(library.find("broken", SL_SHADER_surface, {}, other), nullptr);
+    EXPECT_EQ(diag.count(base::Severity::Error), errors);
+    EXPECT_EQ(num_compiled, 2);
+}
+
+TEST_F(Driver, ThePathOfTheCallDecides) {
+    write(in("matte.sl"), matte_text);
+    fs::create_directories(in("mine"));
+    write(in("mine/matte.sl"), "surface matte(float mine = 1;) { Ci = mine; }\n");
+    rt::ShaderLibrary library(config(), strings, diag);
+    const auto* standard = library.find("matte", SL_SHADER_surface, {});
+    const auto* mine =
+        library.find("matte", SL_SHADER_surface, {}, std::vector<std::string>{in("mine")});
+    ASSERT_TRUE(standard && mine);
+    EXPECT_EQ(standard->find_param("mine"), -1);
+    EXPECT_EQ(mine->find_param("mine"), 0);
+}
+
+TEST_F(Driver, CancelledCompilationsEndSilently) {
+    write(in("matte.sl"), matte_text);
+    auto c = config();
+    c.interrupted = [] { return true; };
+    rt::ShaderLibrary library(c, strings, diag);
+    library.prefetch("matte", {});
+    EXPECT_EQ(library.find("matte", SL_SHADER_surface, {}), nullptr);
+    EXPECT_TRUE(diag.messages().empty());
+    ObjectOptions options = native;
+    options.front.cancelled = c.interrupted;
+    EXPECT_EQ(compile_to_bytes(in("matte.sl"), options, diag), std::nullopt);
+    EXPECT_TRUE(diag.messages().empty());
+}
+
+TEST_F(Driver, CancellingEndsTheWholeGroupOfProcesses) {
+    int calls = 0;
+    ProcessSettings settings;
+    settings.cancelled = [&calls] { return ++calls > 2; };
+    // The shell's child holds the pipe too: only ending both lets run_process return.
+    const ProcessResult result = run_process({"sh", "-c", "sleep 1000; true"}, "", settings);
+    EXPECT_TRUE(result.cancelled);
+    EXPECT_EQ(result.exit_code, -1);
+}
+
+TEST_F(Driver, AnUnwritableCacheIsStillRead) {
+    write(in("matte.sl"), matte_text);
+    write(in("file"), "no directory");
+    std::atomic<int> num_compiled = 0;
+    auto c = config(&num_compiled);
+    c.cache_dir = in("file/cache");
+    for (int run = 0; run < 2; ++run) {
+        rt::ShaderLibrary library(c, strings, diag);
+        EXPECT_NE(library.find("matte", SL_SHADER_surface, {}), nullptr);
+    }
+    EXPECT_EQ(num_compiled, 2);
+    EXPECT_EQ(diag.count(base::Severity::Warning), 1U);
+    EXPECT_FALSE(diag.had_errors());
+}
+
+TEST_F(Driver, PackagesServeWhereDirectoriesDo) {
+    std::vector<std::pair<std::string, std::string>> members;
+    for (const char* name : {"one", "two", "a_shader_with_quite_a_long_name"}) {
+        write(in("x.sl"), std::string("surface ") + name + "() { Ci = 1; }\n");
+        auto bytes = compile_to_bytes(in("x.sl"), native, diag);
+        ASSERT_TRUE(bytes);
+        members.emplace_back(std::string(name) + ".slo", std::move(*bytes));
+    }
+    members.emplace_back("damaged.slo", members[0].second.substr(0, 1000));
+    write(in("lib.slpkg"), base::ar_bytes(members));
+    auto c = config();
+    c.search_path = {in("no-such"), in("lib.slpkg"), dir.path()};
+    {
+        c.trusted = {in("lib.slpkg")};
+        rt::ShaderLibrary library(c, strings, diag);
+        const auto* one = library.find("one", SL_SHADER_surface, {});
+        const auto* two = library.find("two.slo", SL_SHADER_surface, {});
+        ASSERT_TRUE(one && two);
+        EXPECT_STREQ(one->object().name, "one");
+        EXPECT_STREQ(two->object().name, "two");
+        EXPECT_NE(library.find("a_shader_with_quite_a_long_name", SL_SHADER_surface, {}), nullptr);
+        EXPECT_EQ(library.find(in("lib.slpkg/one"), SL_SHADER_surface, {}), one);
+        EXPECT_FALSE(diag.had_errors());
+        EXPECT_EQ(library.find("damaged", SL_SHADER_surface, {}), nullptr);
+        EXPECT_EQ(diag.count(base::Severity::Error), 1U);
+    }
+    c.trusted = {in("elsewhere")};
+    rt::ShaderLibrary library(c, strings, diag);
+    EXPECT_EQ(library.find("one", SL_SHADER_surface, {}), nullptr);
+    EXPECT_EQ(diag.count(base::Severity::Warning), 1U);
+}
+
+TEST_F(Driver, AFileThatIsNoPackageIsToldOnce) {
+    write(in("matte.sl"), matte_text);
+    write(in("text"), "no package");
+    auto c = config();
+    c.search_path = {in("text"), dir.path()};
+    rt::ShaderLibrary library(c, strings, diag);
+    EXPECT_NE(library.find("matte", SL_SHADER_surface, {}), nullptr);
+    EXPECT_EQ(library.find("absent", SL_SHADER_surface, {}), nullptr);
+    EXPECT_EQ(diag.count(base::Severity::Warning), 1U);
 }
 
 // --- the programs

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "slc/emit_runner.h"
 
+#include "runtime/base/file.h"
+
 #include <cstring>
 
 namespace slc {
@@ -82,7 +84,9 @@ const rt::ShaderObject* EmitRunner::build(const Program& program, const Facts& f
     CompileFlags flags;
     flags.optimisation = way.optimisation;
     const std::string path = dir_.path() + "/" + std::to_string(++num_objects_) + ".slo";
-    if (!build_shared_object(*tools, {{way.lanes, last_c}}, flags, path, diag)) {
+    const auto bytes =
+        build_shared_object(*tools, {{way.lanes, last_c}}, flags, program.name, {}, diag);
+    if (!bytes || !base::write_file_atomically(path, *bytes).empty()) {
         return nullptr;
     }
     return library.load(path, {});

@@ -3,36 +3,16 @@
 // stub services.
 #pragma once
 
+#include "runtime/base/temp_dir.h"
 #include "runtime/batch.h"
 #include "slc/compiler.h"
 #include "slc/emit_c.h"
 #include "slc/toolchain.h"
 
-#include <cstdlib>
-#include <filesystem>
 #include <memory>
 #include <string>
 
 namespace slc {
-
-// A temporary directory for one test.
-class ScratchDir {
-public:
-    ScratchDir() {
-        std::string pattern = (std::filesystem::temp_directory_path() / "slc-test-XXXXXX").string();
-        path_ = ::mkdtemp(pattern.data());
-    }
-    ~ScratchDir() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    ScratchDir(const ScratchDir&) = delete;
-    ScratchDir& operator=(const ScratchDir&) = delete;
-    [[nodiscard]] const std::string& path() const { return path_; }
-
-private:
-    std::string path_;
-};
 
 // Services that answer as an empty scene would.
 [[nodiscard]] sl_services empty_services(rt::StringTable& strings);
@@ -59,7 +39,7 @@ public:
     std::string last_c; // text of the last build
 
 private:
-    ScratchDir dir_;
+    base::TempDir dir_{"slc-test"};
     int num_objects_ = 0;
 };
 

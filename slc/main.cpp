@@ -1,196 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program slc: compiles SL files into shader objects; --help lists the options. Files are
-// compiled by several threads; what each has to say is printed in the order of the command line.
-#include "runtime/base/sha256.h"
-#include "slc/driver.h"
+// The program slc: compiles SL files into shader objects, or all of them into one package; --help
+// lists the options. Files are compiled by several threads; what each has to say is printed in the
+// order of the command line.
+#include "runtime/base/ar_file.h"
+#include "runtime/base/file.h"
+#include "runtime/base/interrupt.h"
+#include "runtime/base/seal.h"
+#include "sl_fingerprint.h"
+#include "slc/options.h"
 
 #include <algorithm>
 #include <atomic>
-#include <charconv>
 #include <condition_variable>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <mutex>
-#include <set>
 #include <string_view>
 #include <thread>
 #include <unistd.h>
 
 namespace {
 
+using slc::Options;
 using slc::Outcome;
-
-constexpr std::string_view usage = R"(usage: slc [options] file.sl...
-Compiles RenderMan Shading Language shaders. Each shader becomes <name of the shader>.slo.
-
-  -o FILE              write the object to FILE (one shader only)
-  -d DIR               write objects into DIR (default: the current directory)
-  -I DIR               look for included files in DIR; may be repeated
-  -D NAME[=VALUE]      define a preprocessor macro; may be repeated
-  -O LEVEL             optimisation of the C compiler, 0 to 3 (default 2)
-  -j N                 compile N files at a time (default: the number of processors)
-  -q                   say nothing but errors and warnings
-  --check              check only, write nothing
-  --explain            print why each shader variable is needed
-  --dump=WHAT          print tokens, ast, ir, facts or c instead of compiling
-  --native             only code for this processor (default: AVX2 and plain x86-64)
-  --cc=PROGRAM         C compiler and preprocessor (default: cc, gcc or clang)
-  --target=c           what to make; opencl and both are not part of this version
-  --help, --version
-
-Exit status: 0 done, 1 errors in the input, 2 wrong usage, 3 the environment failed.
-)";
-
-struct Options {
-    slc::ObjectOptions object;
-    std::string output;
-    std::string dir = ".";
-    std::string dump;
-    bool quiet = false;
-    bool check = false;
-    bool explain = false;
-    unsigned jobs = std::max(1U, std::thread::hardware_concurrency());
-    std::vector<std::string> files;
-};
-
-int wrong_usage(const std::string& text) {
-    std::fprintf(stderr, "slc: %s; see slc --help\n", text.c_str());
-    return 2;
-}
-
-// The value of an option written -Xvalue or -X value.
-std::optional<std::string> short_value(int argc, char** argv, int& i) {
-    const std::string_view arg = argv[i];
-    if (arg.size() > 2) {
-        return std::string(arg.substr(2));
-    }
-    if (i + 1 >= argc) {
-        return std::nullopt;
-    }
-    return std::string(argv[++i]);
-}
-
-bool parse_number(const std::string& text, unsigned lowest, unsigned highest, unsigned& value) {
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    return error == std::errc() && end == text.data() + text.size() && value >= lowest &&
-           value <= highest;
-}
-
-// -1: go on; otherwise the exit status.
-int take_long_option(std::string_view arg, Options& options) {
-    const std::size_t equals = arg.find('=');
-    const std::string_view name = arg.substr(0, equals);
-    const std::string value(equals == std::string_view::npos ? "" : arg.substr(equals + 1));
-    if (arg == "--help") {
-        std::fwrite(usage.data(), 1, usage.size(), stdout);
-        return 0;
-    }
-    if (arg == "--version") {
-        std::printf("slc (Perigee) %s\n", PERIGEE_VERSION);
-        return 0;
-    }
-    if (arg == "--check") {
-        options.check = true;
-    } else if (arg == "--explain") {
-        options.explain = true;
-    } else if (arg == "--native") {
-        options.object.native_only = true;
-    } else if (name == "--cc" && !value.empty()) {
-        options.object.front.preprocessor = value;
-    } else if (name == "--dump") {
-        if (value != "c" && !slc::dump_kind(value)) {
-            return wrong_usage("--dump wants tokens, ast, ir, facts or c, not \"" + value + "\"");
-        }
-        options.dump = value;
-    } else if (name == "--target") {
-        if (value == "opencl" || value == "both") {
-            return wrong_usage("--target=" + value + ": OpenCL is not part of this version");
-        }
-        if (value != "c") {
-            return wrong_usage("--target wants c, not \"" + value + "\"");
-        }
-    } else {
-        return wrong_usage("unknown option " + std::string(arg));
-    }
-    return -1;
-}
-
-int take_short_option(int argc, char** argv, int& i, Options& options) {
-    const std::string arg = argv[i];
-    if (arg == "-q") {
-        options.quiet = true;
-        return -1;
-    }
-    const char letter = arg[1];
-    if (std::string_view("odIDOj").find(letter) == std::string_view::npos) {
-        return wrong_usage("unknown option " + arg);
-    }
-    const auto value = short_value(argc, argv, i);
-    if (!value) {
-        return wrong_usage(arg + " wants a value");
-    }
-    unsigned number = 0;
-    switch (letter) {
-    case 'o':
-        options.output = *value;
-        break;
-    case 'd':
-        options.dir = *value;
-        break;
-    case 'I':
-        options.object.front.include_dirs.push_back(*value);
-        break;
-    case 'D':
-        options.object.front.defines.push_back(*value);
-        break;
-    case 'O':
-        if (!parse_number(*value, 0, 3, number)) {
-            return wrong_usage("-O wants 0 to 3");
-        }
-        options.object.flags.optimisation = static_cast<int>(number);
-        break;
-    default:
-        if (!parse_number(*value, 1, 1024, options.jobs)) {
-            return wrong_usage("-j wants a number from 1 to 1024");
-        }
-    }
-    return -1;
-}
-
-int parse_arguments(int argc, char** argv, Options& options) {
-    bool only_files = false;
-    for (int i = 1; i < argc; ++i) {
-        const std::string_view arg = argv[i];
-        int status = -1;
-        if (only_files || arg.size() < 2 || arg[0] != '-') {
-            options.files.emplace_back(arg);
-        } else if (arg == "--") {
-            only_files = true;
-        } else if (arg.starts_with("--")) {
-            status = take_long_option(arg, options);
-        } else {
-            status = take_short_option(argc, argv, i, options);
-        }
-        if (status >= 0) {
-            return status;
-        }
-    }
-    if (options.files.empty()) {
-        return wrong_usage("no input file");
-    }
-    if (!options.output.empty() && options.files.size() > 1) {
-        return wrong_usage("-o names one object, but there are " +
-                           std::to_string(options.files.size()) + " input files");
-    }
-    return -1;
-}
 
 // What one file had to say and what became of it.
 struct FileResult {
     Outcome outcome = Outcome::Done;
     std::string out;
-    std::string err;
+    base::Diag diag{base::Diag::Deferred::Yes};
+    std::vector<std::pair<std::string, std::string>> members; // of the package: name, object
     bool finished = false;
 };
 
@@ -213,8 +53,37 @@ std::string object_path(const std::string& name, const Options& options) {
     return options.output.empty() ? options.dir + "/" + name + ".slo" : options.output;
 }
 
-Outcome compile(const std::string& file, const Options& options, base::Diag& diag,
-                std::string& out) {
+Outcome write_file(const std::string& path, std::string_view bytes, base::Diag& diag) {
+    const std::string error = base::write_file_atomically(path, bytes);
+    if (!error.empty()) {
+        diag.report(base::Severity::Error, base::Code::NoFile, {}, error);
+    }
+    return error.empty() ? Outcome::Done : Outcome::BadEnvironment;
+}
+
+// One shader of a file: into its object, or to the members of the package.
+Outcome build(const slc::Program& program, const Options& options, FileResult& result) {
+    const std::string path = object_path(program.name, options);
+    if (!options.makes_package()) {
+        ::unlink(path.c_str()); // must not pass for the result of this compilation
+    }
+    slc::BuiltObject built = slc::build_object(program, options.object, result.diag);
+    if (built.outcome != Outcome::Done) {
+        return built.outcome;
+    }
+    if (options.makes_package()) {
+        result.members.emplace_back(program.name + ".slo", std::move(built.bytes));
+        return Outcome::Done;
+    }
+    const Outcome outcome = write_file(path, built.bytes, result.diag);
+    if (outcome == Outcome::Done && !options.quiet) {
+        result.out += path + "\n";
+    }
+    return outcome;
+}
+
+Outcome compile(const std::string& file, const Options& options, FileResult& result) {
+    base::Diag& diag = result.diag;
     const slc::Unit unit = slc::compile_file(file, options.object.front, diag);
     if (!unit.ok()) {
         // What an earlier run made of this file must not be taken for the result of this one.
@@ -224,7 +93,7 @@ Outcome compile(const std::string& file, const Options& options, base::Diag& dia
         }
         return Outcome::BadInput;
     }
-    if (!options.output.empty() && unit.programs.size() > 1) {
+    if (!options.output.empty() && !options.makes_package() && unit.programs.size() > 1) {
         diag.report(base::Severity::Error, base::Code::Consistency, {},
                     file + " holds " + std::to_string(unit.programs.size()) +
                         " shaders, but -o names one object");
@@ -236,42 +105,58 @@ Outcome compile(const std::string& file, const Options& options, base::Diag& dia
     Outcome outcome = Outcome::Done;
     for (const slc::Program& program : unit.programs) {
         if (options.explain) {
-            out += slc::facts_text(program, slc::analyse(program));
+            result.out += slc::facts_text(program, slc::analyse(program));
         }
-        if (options.check) {
-            continue;
-        }
-        const std::string path = object_path(program.name, options);
-        const Outcome one = slc::build_object(program, options.object, path, diag);
-        outcome = std::max(outcome, one);
-        if (one == Outcome::Done && !options.quiet) {
-            out += path + "\n";
+        if (!options.check) {
+            outcome = std::max(outcome, build(program, options, result));
         }
     }
     return outcome;
 }
 
-FileResult process(const std::string& file, const Options& options) {
-    FileResult result;
-    char* text = nullptr;
-    std::size_t size = 0;
-    std::FILE* stream = ::open_memstream(&text, &size);
-    if (!stream) {
-        result.outcome = Outcome::BadEnvironment;
-        return result;
+// An object made before, as a member of the package.
+Outcome take_object(const std::string& file, FileResult& result) {
+    auto bytes = base::read_file(file);
+    if (!bytes || base::check_seal(*bytes, SL_ABI_FINGERPRINT) != base::SealState::Good) {
+        result.diag.report(base::Severity::Error, base::Code::BadFile, {},
+                           file + " is not a whole shader object of this version of slc");
+        return Outcome::BadInput;
     }
-    {
-        base::Diag diag(stream);
-        result.outcome = options.dump.empty() ? compile(file, options, diag, result.out)
-                                              : dump(file, options, diag, result.out);
-        if (diag.had_errors() && diag.last_code() == base::Code::System) {
-            result.outcome = Outcome::BadEnvironment; // no preprocessor
+    result.members.emplace_back(std::filesystem::path(file).filename().string(), std::move(*bytes));
+    return Outcome::Done;
+}
+
+void process(const std::string& file, const Options& options, FileResult& result) {
+    if (!options.dump.empty()) {
+        result.outcome = dump(file, options, result.diag, result.out);
+    } else if (options.makes_package() && file.ends_with(".slo")) {
+        result.outcome = take_object(file, result);
+    } else {
+        result.outcome = compile(file, options, result);
+    }
+    if (result.diag.had_errors() && result.diag.last_code() == base::Code::System) {
+        result.outcome = Outcome::BadEnvironment; // no preprocessor
+    }
+}
+
+// Shaders in the order of their names, so that the same shaders give the same bytes.
+Outcome write_package(std::vector<FileResult>& results, const Options& options, base::Diag& diag) {
+    std::map<std::string, std::string> members;
+    for (FileResult& result : results) {
+        for (auto& [name, object] : result.members) {
+            if (!members.try_emplace(name, std::move(object)).second) {
+                diag.report(base::Severity::Error, base::Code::Consistency, {},
+                            "two shaders would be " + name + " in " + options.output);
+                return Outcome::BadInput;
+            }
         }
     }
-    std::fclose(stream);
-    result.err.assign(text, size);
-    std::free(text);
-    return result;
+    const std::vector<std::pair<std::string, std::string>> sorted(members.begin(), members.end());
+    const Outcome outcome = write_file(options.output, base::ar_bytes(sorted), diag);
+    if (outcome == Outcome::Done && !options.quiet) {
+        std::printf("%s\n", options.output.c_str());
+    }
+    return outcome;
 }
 
 Outcome process_all(const Options& options) {
@@ -281,9 +166,10 @@ Outcome process_all(const Options& options) {
     std::condition_variable changed;
     const auto work = [&] {
         for (std::size_t i = next++; i < results.size(); i = next++) {
-            FileResult result = process(options.files[i], options);
+            if (!base::is_interrupted()) {
+                process(options.files[i], options, results[i]);
+            }
             const std::lock_guard lock(mutex);
-            results[i] = std::move(result);
             results[i].finished = true;
             changed.notify_all();
         }
@@ -292,27 +178,25 @@ Outcome process_all(const Options& options) {
     for (std::size_t i = 0; i < std::min<std::size_t>(options.jobs, results.size()); ++i) {
         workers.emplace_back(work);
     }
+    base::Diag diag;
     Outcome worst = Outcome::Done;
     for (FileResult& result : results) {
         std::unique_lock lock(mutex);
         changed.wait(lock, [&] { return result.finished; });
         std::fwrite(result.out.data(), 1, result.out.size(), stdout);
         std::fflush(stdout);
-        std::fwrite(result.err.data(), 1, result.err.size(), stderr);
+        result.diag.deliver(diag);
         worst = std::max(worst, result.outcome);
+    }
+    if (options.makes_package() && !options.check && options.dump.empty()) {
+        ::unlink(options.output.c_str()); // must not pass for the result of this run
+        worst = worst == Outcome::Done ? write_package(results, options, diag) : worst;
     }
     return worst;
 }
 
-} // namespace
-
-int main(int argc, char** argv) {
-    Options options;
-    const int status = parse_arguments(argc, argv, options);
-    if (status >= 0) {
-        return status;
-    }
-    switch (process_all(options)) {
+int exit_code(Outcome outcome) {
+    switch (outcome) {
     case Outcome::Done:
         return 0;
     case Outcome::BadInput:
@@ -321,4 +205,27 @@ int main(int argc, char** argv) {
         return 3;
     }
     return 3;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    slc::ParsedOptions parsed = slc::parse_options({argv + (argc > 0 ? 1 : 0), argv + argc});
+    if (!parsed.error.empty()) {
+        std::fprintf(stderr, "slc: %s; see slc --help\n", parsed.error.c_str());
+        return 2;
+    }
+    if (parsed.options.help) {
+        std::fputs(slc::usage_text().c_str(), stdout);
+        return 0;
+    }
+    if (parsed.options.version) {
+        std::printf("slc (Perigee) %s\n", PERIGEE_VERSION);
+        return 0;
+    }
+    base::catch_interrupts();
+    parsed.options.object.front.cancelled = base::is_interrupted;
+    const Outcome outcome = process_all(parsed.options);
+    base::finish_interrupt();
+    return exit_code(outcome);
 }

@@ -25,6 +25,7 @@ public:
     void error_once(Loc loc, std::string_view text);
     void warning_once(Loc loc, std::string_view text);
     // A message about the environment, without a place (no compiler, unreadable file).
+    void count_error() { ++num_errors_; } // one that needs no words
     void system_error(std::string_view text, base::Code code);
 
     [[nodiscard]] std::size_t num_errors() const { return num_errors_; }

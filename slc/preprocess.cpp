@@ -117,8 +117,10 @@ ProcessResult run_first_found(const std::string& input, const std::string& name,
     if (!options.preprocessor.empty()) {
         candidates = {options.preprocessor};
     }
+    ProcessSettings settings;
+    settings.cancelled = options.cancelled;
     for (const std::string& compiler : candidates) {
-        ProcessResult result = run_process(arguments(compiler, name, options), input);
+        ProcessResult result = run_process(arguments(compiler, name, options), input, settings);
         if (result.started) {
             return result;
         }
@@ -139,6 +141,10 @@ std::optional<std::string> preprocess(std::string_view text, const std::string& 
                                               : options.preprocessor) +
                 "); install one: apt-get install gcc libc6-dev",
             base::Code::System);
+        return std::nullopt;
+    }
+    if (result.cancelled) {
+        messages.count_error();
         return std::nullopt;
     }
     const bool ok = relay(result.err, messages);

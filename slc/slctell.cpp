@@ -2,22 +2,43 @@
 // The program slctell: prints the interface of compiled shaders, as text or JSON.
 // Defaults are found the way the engine finds them, by running the shader's init code; the spaces
 // it asks for are noted instead of being transformed into, so a default reads `"shader" [0 0 0]`.
+#include "runtime/base/ar_file.h"
+#include "runtime/base/option_table.h"
+#include "runtime/base/search_path.h"
 #include "runtime/shader.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <span>
 #include <string_view>
 
 namespace {
 
-constexpr std::string_view usage = R"(usage: slctell [--json] shader...
-Prints type, parameters and needed variables of compiled shaders. A shader is a path, or a name that is looked up on
-the path in the environment variable SHADERS (default: the current directory).
+enum class Switch {
+#define SLCTELL_OPTION(id, name, arguments, metavar, help) id,
+#include "slc/slctell_options.def"
+#undef SLCTELL_OPTION
+};
 
-Exit status: 0 done, 1 a shader was not found or is broken, 2 wrong usage.
-)";
+constexpr base::OptionRow switches[] = {
+#define SLCTELL_OPTION(id, name, arguments, metavar, help) {name, arguments, metavar, help},
+#include "slc/slctell_options.def"
+#undef SLCTELL_OPTION
+};
+
+std::string usage_text() {
+    return "usage: slctell [options] shader...\n"
+           "Prints type, parameters and needed variables of compiled shaders. A shader is a path, "
+           "a "
+           "name that is looked\nup on the path in the environment variable SHADERS (default: the "
+           "current directory), or a package or\ndirectory: all in it.\n\n" +
+           base::option_lines(switches, 14, '=') +
+           "\nExit status: 0 done, 1 a shader was not found or is broken, 2 wrong usage.\n";
+}
 
 constexpr const char* shader_types[] = {"surface", "displacement", "light",
                                         "volume",  "imager",       "transformation"};
@@ -92,7 +113,7 @@ std::string number(float value) {
 }
 
 // As a C, RIB and JSON string.
-std::string quoted(std::string_view text) {
+std::string string_literal(std::string_view text) {
     std::string out = "\"";
     for (const char c : text) {
         if (c == '"' || c == '\\') {
@@ -145,8 +166,9 @@ std::vector<std::string> Told::values(const rt::ShaderInstance& instance, int pa
     const int n = std::max(p.array_length, 1) * rt::components_of(p.type);
     std::vector<std::string> texts;
     for (int k = 0; k < n; ++k) {
-        texts.push_back(p.type == SL_TYPE_string ? quoted(instance.uniform_strings(param)[k])
-                                                 : number(instance.uniform_floats(param)[k]));
+        texts.push_back(p.type == SL_TYPE_string
+                            ? string_literal(instance.uniform_strings(param)[k])
+                            : number(instance.uniform_floats(param)[k]));
     }
     return texts;
 }
@@ -179,7 +201,7 @@ std::string Told::default_text(int param) const {
         prefix = "\"rgb\" ";
     } else if (p.type >= SL_TYPE_point && p.type <= SL_TYPE_matrix) {
         const std::string& space = spaces_[static_cast<std::size_t>(param)];
-        prefix = quoted(space.empty() ? "current" : space) + " ";
+        prefix = string_literal(space.empty() ? "current" : space) + " ";
     }
     return prefix + "[" + list + "]";
 }
@@ -215,24 +237,25 @@ void Told::print_text() const {
 
 std::string json_variables(std::uint64_t mask) {
     std::string text;
-    for_each_variable(mask,
-                      [&](const char* name) { text += (text.empty() ? "" : ", ") + quoted(name); });
+    for_each_variable(
+        mask, [&](const char* name) { text += (text.empty() ? "" : ", ") + string_literal(name); });
     return "[" + text + "]";
 }
 
 void Told::print_json(bool first) const {
     const sl_object& o = shader_.object();
     std::printf("%s  {\"name\": %s, \"type\": \"%s\", \"source\": %s,\n   \"parameters\": [",
-                first ? "" : ",\n", quoted(o.name).c_str(), shader_types[o.type],
-                quoted(o.source ? o.source : "").c_str());
+                first ? "" : ",\n", string_literal(o.name).c_str(), shader_types[o.type],
+                string_literal(o.source ? o.source : "").c_str());
     for (int i = 0; i < o.num_params; ++i) {
         const sl_param& p = o.params[i];
         std::printf(
             "%s\n    {\"name\": %s, \"type\": \"%s\", \"array_length\": %d, \"detail\": \"%s\", "
             "\"output\": %s, \"space\": %s, \"default\": [",
-            i > 0 ? "," : "", quoted(p.name).c_str(), rt::type_text(p.type, 0).c_str(),
+            i > 0 ? "," : "", string_literal(p.name).c_str(), rt::type_text(p.type, 0).c_str(),
             p.array_length, p.detail == SL_DETAIL_varying ? "varying" : "uniform",
-            p.is_output ? "true" : "false", quoted(spaces_[static_cast<std::size_t>(i)]).c_str());
+            p.is_output ? "true" : "false",
+            string_literal(spaces_[static_cast<std::size_t>(i)]).c_str());
         const char* separator = "";
         for (const std::string& value : defaults_[static_cast<std::size_t>(i)]) {
             std::printf("%s%s", separator, value.c_str());
@@ -258,40 +281,105 @@ void Told::print_json(bool first) const {
 
 std::vector<std::string> search_path() {
     const char* variable = std::getenv("SHADERS");
-    std::string_view text = variable && *variable ? variable : ".";
-    std::vector<std::string> path;
-    while (!text.empty()) {
-        const std::size_t end = text.find(':');
-        path.emplace_back(text.substr(0, end));
-        text = end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
+    return base::expand_search_path(variable && *variable ? variable : ".");
+}
+
+// A package or directory stands for the objects in it.
+std::vector<std::string> expanded(const std::string& name) {
+    namespace fs = std::filesystem;
+    std::vector<std::string> names;
+    std::error_code error;
+    std::string why;
+    if (fs::is_directory(name, error)) {
+        for (const auto& entry : fs::directory_iterator(name, error)) {
+            if (entry.path().extension() == ".slo") {
+                names.push_back(entry.path().string());
+            }
+        }
+        std::sort(names.begin(), names.end());
+    } else if (const auto package = base::ArFile::open(name, why)) {
+        for (const std::string& member : package->names()) {
+            const bool is_path = name.find('/') != std::string::npos; // else it would be searched
+            names.push_back((is_path ? name : "./" + name) + "/" + member);
+        }
+    } else {
+        names.push_back(name);
     }
-    return path;
+    return names;
+}
+
+struct Options {
+    bool json = false, list = false, help = false, version = false;
+    std::vector<std::string> names;
+    std::string error; // not empty: wrong usage
+};
+
+Options parse(std::span<char* const> arguments) {
+    Options options;
+    for (const std::string_view argument : arguments) {
+        const auto* row = std::find_if(std::begin(switches), std::end(switches),
+                                       [&](const auto& r) { return r.name == argument; });
+        if (row == std::end(switches)) {
+            if (argument.starts_with("-")) {
+                options.error = "unknown option " + std::string(argument);
+            }
+            options.names.emplace_back(argument);
+            continue;
+        }
+        switch (static_cast<Switch>(row - switches)) {
+        case Switch::json:
+            options.json = true;
+            break;
+        case Switch::list:
+            options.list = true;
+            break;
+        case Switch::help:
+            options.help = true;
+            break;
+        case Switch::version:
+            options.version = true;
+            break;
+        }
+    }
+    if (options.names.empty() && options.error.empty()) {
+        options.error = "no shader named";
+    }
+    return options;
+}
+
+void tell(const Options& options, rt::ShaderLibrary& library, rt::StringTable& strings) {
+    bool first = true;
+    for (const std::string& given : options.names) {
+        for (const std::string& name : expanded(given)) {
+            const rt::ShaderObject* shader = library.find_any(name, {});
+            if (!shader) {
+                continue;
+            }
+            if (options.list) {
+                std::printf("%s %s\n", shader_types[shader->object().type], shader->object().name);
+                continue;
+            }
+            const Told told(*shader, strings);
+            options.json ? told.print_json(first) : told.print_text();
+            first = false;
+        }
+    }
 }
 
 } // namespace
 
 int main(int argc, char** argv) {
-    bool json = false;
-    std::vector<std::string> names;
-    for (int i = 1; i < argc; ++i) {
-        const std::string_view arg = argv[i];
-        if (arg == "--json") {
-            json = true;
-        } else if (arg == "--help") {
-            std::fwrite(usage.data(), 1, usage.size(), stdout);
-            return 0;
-        } else if (arg == "--version") {
-            std::printf("slctell (Perigee) %s\n", PERIGEE_VERSION);
-            return 0;
-        } else if (arg.starts_with("-")) {
-            std::fprintf(stderr, "slctell: unknown option %s; see slctell --help\n", argv[i]);
-            return 2;
-        } else {
-            names.emplace_back(arg);
-        }
+    const Options options = parse({argv + (argc > 0 ? 1 : 0), argv + argc});
+    if (options.help) {
+        std::fputs(usage_text().c_str(), stdout);
+        return 0;
     }
-    if (names.empty()) {
-        std::fprintf(stderr, "slctell: no shader named; see slctell --help\n");
+    if (options.version) {
+        std::printf("slctell (Perigee) %s\n", PERIGEE_VERSION);
+        return 0;
+    }
+    if (!options.error.empty()) {
+        std::fprintf(stderr, "slctell: %s; see slctell --help\n", options.error.c_str());
         return 2;
     }
     base::Diag diag;
@@ -300,16 +388,9 @@ int main(int argc, char** argv) {
     config.search_path = search_path();
     config.trust_all = true; // the user named the shader
     rt::ShaderLibrary library(std::move(config), strings, diag);
-    std::printf(json ? "[\n" : "");
-    bool first = true;
-    for (const std::string& name : names) {
-        const rt::ShaderObject* shader = library.find_any(name, {});
-        if (shader) {
-            const Told told(*shader, strings);
-            json ? told.print_json(first) : told.print_text();
-            first = false;
-        }
-    }
-    std::printf(json ? "\n]\n" : "");
+    const bool json = options.json && !options.list;
+    std::fputs(json ? "[\n" : "", stdout);
+    tell(options, library, strings);
+    std::fputs(json ? "\n]\n" : "", stdout);
     return diag.had_errors() ? 1 : 0;
 }

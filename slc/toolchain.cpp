@@ -2,7 +2,9 @@
 #include "slc/toolchain.h"
 
 #include "runtime/base/file.h"
+#include "runtime/base/module.h"
 #include "runtime/base/seal.h"
+#include "runtime/base/temp_dir.h"
 #include "sl_fingerprint.h"
 #include "slc/process.h"
 #include "slc_build_id.h"
@@ -42,15 +44,8 @@ std::string on_path(const std::string& program) {
     return "";
 }
 
-// Where the running program lies, links resolved.
-fs::path program_dir() {
-    std::error_code error;
-    const fs::path self = fs::read_symlink("/proc/self/exe", error);
-    return error ? fs::path() : self.parent_path();
-}
-
 bool place_files(Toolchain& tools) {
-    const fs::path bin = program_dir();
+    const fs::path bin = base::program_directory();
     const fs::path installed = bin.parent_path();
     if (is_file((installed / "include/perigee/sl_shader.h").string()) &&
         is_file((installed / "lib/perigee/libsl_lanes4.a").string())) {
@@ -83,30 +78,6 @@ std::string archive(const Toolchain& tools, int lanes) {
     return tools.archive_dir + "/libsl_lanes" + std::to_string(lanes) + ".a";
 }
 
-// A directory of its own for intermediate files, removed at the end.
-class WorkDir {
-public:
-    WorkDir() {
-        std::error_code error;
-        std::string pattern = (fs::temp_directory_path(error) / "slc-XXXXXX").string();
-        if (!error && ::mkdtemp(pattern.data())) {
-            path_ = pattern;
-        }
-    }
-    ~WorkDir() {
-        std::error_code ignored;
-        if (!path_.empty()) {
-            fs::remove_all(path_, ignored);
-        }
-    }
-    WorkDir(const WorkDir&) = delete;
-    WorkDir& operator=(const WorkDir&) = delete;
-    [[nodiscard]] const std::string& path() const { return path_; }
-
-private:
-    std::string path_;
-};
-
 std::vector<std::string> code_flags(const CompileFlags& flags) {
     std::vector<std::string> all = {
         "-std=gnu11",
@@ -127,22 +98,34 @@ std::vector<std::string> code_flags(const CompileFlags& flags) {
     return all;
 }
 
-bool run(const std::vector<std::string>& argv, std::string_view input, std::string& messages) {
-    const ProcessResult result = run_process(argv, input);
-    if (!result.started) {
+// What all steps of one object share.
+struct Workshop {
+    const Toolchain& tools;
+    const CompileFlags& flags;
+    ProcessSettings settings;
+};
+
+// "" if all went well.
+std::string run(const Workshop& shop, const std::vector<std::string>& argv,
+                std::string_view input) {
+    const ProcessResult result = run_process(argv, input, shop.settings);
+    std::string messages;
+    if (result.cancelled) {
+        messages = "cancelled";
+    } else if (!result.started) {
         messages = argv[0] + " cannot be run";
     } else if (result.cut_off) {
         messages = argv[0] + " was stopped at a resource limit";
     } else if (result.exit_code != 0) {
         messages = result.err.empty() ? argv[0] + " failed" : result.err;
     }
-    return messages.empty();
+    return messages;
 }
 
-std::string compile_variant(const Toolchain& tools, const VariantText& variant,
-                            const CompileFlags& flags, const std::string& object) {
-    std::vector<std::string> argv = {tools.compiler};
-    for (std::string& flag : code_flags(flags)) {
+std::string compile_variant(const Workshop& shop, const VariantText& variant,
+                            const std::string& object) {
+    std::vector<std::string> argv = {shop.tools.compiler};
+    for (std::string& flag : code_flags(shop.flags)) {
         argv.push_back(std::move(flag));
     }
     if (variant.lanes == 8) {
@@ -151,29 +134,49 @@ std::string compile_variant(const Toolchain& tools, const VariantText& variant,
         // whole loads, which cost 70 % more time in calls of noise (docs/design/runtime-lib.md).
         argv.emplace_back("-mtune=skylake-avx512");
     }
-    for (const std::string& dir : split(tools.include_dir, ':')) {
+    for (const std::string& dir : split(shop.tools.include_dir, ':')) {
         argv.push_back("-I" + dir);
     }
     argv.insert(argv.end(), {"-c", "-x", "c", "-", "-o", object});
-    std::string messages;
-    run(argv, variant.c, messages);
-    return messages;
+    return run(shop, argv, variant.c);
 }
 
-std::string link(const Toolchain& tools, const std::vector<VariantText>& variants,
+std::string link(const Workshop& shop, const std::vector<VariantText>& variants,
                  const std::vector<std::string>& objects, const std::string& output) {
     // No start files and no libraries: an object defines all it needs but memcpy and its like,
     // which the program has.
     std::vector<std::string> argv = {
-        tools.compiler,      "-shared",           "-nostdlib", "-Wl,--build-id=none",
+        shop.tools.compiler, "-shared",           "-nostdlib", "-Wl,--build-id=none",
         "-Wl,--gc-sections", "-Wl,--strip-debug", "-o",        output};
     argv.insert(argv.end(), objects.begin(), objects.end());
     for (const VariantText& variant : variants) {
-        argv.push_back(archive(tools, variant.lanes));
+        argv.push_back(archive(shop.tools, variant.lanes));
     }
-    std::string messages;
-    run(argv, {}, messages);
-    return messages;
+    return run(shop, argv, {});
+}
+
+// Compiles the variants side by side and links them; "" or what went wrong.
+std::string build_in(const base::TempDir& dir, const Workshop& shop,
+                     const std::vector<VariantText>& variants, const std::string& linked) {
+    std::vector<std::string> objects;
+    std::vector<std::string> errors(variants.size());
+    for (const VariantText& variant : variants) {
+        objects.push_back(dir.path() + "/lanes" + std::to_string(variant.lanes) + ".o");
+    }
+    {
+        std::vector<std::jthread> others;
+        for (std::size_t i = 1; i < variants.size(); ++i) {
+            others.emplace_back(
+                [&, i] { errors[i] = compile_variant(shop, variants[i], objects[i]); });
+        }
+        errors[0] = compile_variant(shop, variants[0], objects[0]);
+    }
+    for (const std::string& error : errors) {
+        if (!error.empty()) {
+            return error;
+        }
+    }
+    return link(shop, variants, objects, linked);
 }
 
 std::string file_identity(const std::string& path) {
@@ -214,7 +217,7 @@ std::optional<Toolchain> find_toolchain(const std::string& compiler, base::Diag&
             "no shader header", base::Severity::Error, base::Code::System, {},
             "shaders cannot be compiled: sl_shader.h and libsl_lanes4.a are neither in "
             "include/perigee and lib/perigee beside " +
-                program_dir().string() + " nor in a build tree");
+                base::program_directory() + " nor in a build tree");
         return std::nullopt;
     }
     return tools;
@@ -231,54 +234,37 @@ std::string toolchain_identity(const Toolchain& tools, const CompileFlags& flags
     return text;
 }
 
-bool build_shared_object(const Toolchain& tools, const std::vector<VariantText>& variants,
-                         const CompileFlags& flags, const std::string& slo_path, base::Diag& diag) {
-    // An object from before must not pass for the result of this compilation.
-    ::unlink(slo_path.c_str());
-    const WorkDir work;
-    if (work.path().empty()) {
+std::optional<std::string> build_shared_object(const Toolchain& tools,
+                                               const std::vector<VariantText>& variants,
+                                               const CompileFlags& flags, const std::string& name,
+                                               const std::function<bool()>& cancelled,
+                                               base::Diag& diag) {
+    const base::TempDir dir("slc");
+    if (dir.path().empty()) {
         diag.report(base::Severity::Error, base::Code::System, {},
                     "no temporary directory can be made");
-        return false;
+        return std::nullopt;
     }
-    std::vector<std::string> objects;
-    std::vector<std::string> errors(variants.size());
-    for (const VariantText& variant : variants) {
-        objects.push_back(work.path() + "/lanes" + std::to_string(variant.lanes) + ".o");
-    }
-    {
-        std::vector<std::jthread> others;
-        for (std::size_t i = 1; i < variants.size(); ++i) {
-            others.emplace_back(
-                [&, i] { errors[i] = compile_variant(tools, variants[i], flags, objects[i]); });
-        }
-        errors[0] = compile_variant(tools, variants[0], flags, objects[0]);
-    }
-    const std::string linked = work.path() + "/shader.so";
-    std::string message;
-    for (const std::string& e : errors) {
-        message = message.empty() ? e : message;
-    }
-    if (message.empty()) {
-        message = link(tools, variants, objects, linked);
+    ProcessSettings settings;
+    settings.temp_dir = dir.path(); // what the compiler leaves when it is ended goes with it
+    settings.cancelled = cancelled;
+    const std::string linked = dir.path() + "/shader.so";
+    const std::string message = build_in(dir, {tools, flags, settings}, variants, linked);
+    if (cancelled && cancelled()) {
+        return std::nullopt;
     }
     if (!message.empty()) {
         diag.report(base::Severity::Error, base::Code::Bug, {},
-                    slo_path + ": the C compiler refused the generated code: " + message);
-        return false;
+                    name + ": the C compiler refused the generated code: " + message);
+        return std::nullopt;
     }
     auto bytes = base::read_file(linked);
     if (!bytes) {
         diag.report(base::Severity::Error, base::Code::System, {}, "cannot read " + linked);
-        return false;
+        return std::nullopt;
     }
     *bytes += base::seal(*bytes, SL_ABI_FINGERPRINT);
-    message = base::write_file_atomically(slo_path, *bytes);
-    if (!message.empty()) {
-        diag.report(base::Severity::Error, base::Code::NoFile, {}, message);
-        return false;
-    }
-    return true;
+    return bytes;
 }
 
 } // namespace slc

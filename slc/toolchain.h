@@ -6,6 +6,7 @@
 
 #include "runtime/base/diag.h"
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,12 +41,13 @@ struct CompileFlags {
 // instead of versions, because asking the compiler costs milliseconds.
 [[nodiscard]] std::string toolchain_identity(const Toolchain& tools, const CompileFlags& flags);
 
-// Compiles the variants, links them with the archives and puts the sealed object in place by a
-// rename. On failure no file is left at slo_path and the compiler's messages have been reported.
-[[nodiscard]] bool build_shared_object(const Toolchain& tools,
-                                       const std::vector<VariantText>& variants,
-                                       const CompileFlags& flags, const std::string& slo_path,
-                                       base::Diag& diag);
+// Compiles the variants and links them with the archives: the bytes of the sealed object. nullopt
+// after the compiler's messages have been reported, or without any when `cancelled` (may be empty)
+// said so. `name` stands in messages.
+[[nodiscard]] std::optional<std::string>
+build_shared_object(const Toolchain& tools, const std::vector<VariantText>& variants,
+                    const CompileFlags& flags, const std::string& name,
+                    const std::function<bool()>& cancelled, base::Diag& diag);
 
 // The best variant width this processor runs.
 [[nodiscard]] int native_lanes();

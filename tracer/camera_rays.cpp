@@ -4,6 +4,7 @@
 // through C = (0, 0, 1, 0) M^-1, the same point for every (X, Y). C.w != 0: C is the eye, and with
 // A = (X, Y, 0, 1) M^-1 the direction A - A.w eye is affine in (X, Y) and leads to points of
 // positive w. C.w = 0: C is the direction of all rays, and A lies on the ray.
+#include "runtime/base/lanes4.h"
 #include "tracer/camera.h"
 #include "tracer/sampler.h"
 
@@ -23,8 +24,7 @@ base::V3d row3(const base::Mat4& m, int row) {
 
 // Four doubles: a packet is two of these.
 using Double4 [[gnu::vector_size(32)]] = double;
-using Float4 [[gnu::vector_size(16)]] = float;
-using Int4 [[gnu::vector_size(16)]] = std::int32_t;
+using base::Float4, base::Int4;
 
 Double4 widened(const std::int32_t* from) {
     Int4 v;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/gather.h"
 
+#include "runtime/base/lanes4.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,8 +12,7 @@ namespace trace {
 
 namespace {
 
-// Four floats in a register. A Sample is two of them.
-using Float4 [[gnu::vector_size(16), gnu::may_alias]] = float;
+using base::Float4; // a Sample is two of them
 
 const Float4* registers(const Sample& sample) {
     return reinterpret_cast<const Float4*>(&sample);

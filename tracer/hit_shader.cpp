@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/hit_shader.h"
 
+#include "runtime/base/lanes4.h"
 #include "runtime/base/ticks.h"
 #include "tracer/pixel_trace.h"
 #include "tracer/services.h"
@@ -344,9 +345,8 @@ void HitShader::run(rt::ShadeBatch& batch, Execution& execution) {
 
 namespace {
 
-// Four floats of a plane; planes are aligned to 64 bytes and padded to eight. Not eight: GCC takes
-// 32-byte comparisons apart where registers have 16 bytes.
-using Float4 [[gnu::vector_size(16), gnu::may_alias]] = float;
+// Planes are aligned to 64 bytes and padded to eight.
+using base::Float4;
 
 // Clamps the opacities, where they are about to be composited; colours stay (sl.md 5.2). False if a
 // value is no number.

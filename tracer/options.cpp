@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/options.h"
 
+#include "runtime/base/search_path.h"
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -239,7 +241,7 @@ private:
             o.output = values_[0];
             break;
         case Id::shaders:
-            for (std::string& directory : split_path(std::string(values_[0]))) {
+            for (std::string& directory : base::expand_search_path(values_[0], o.shader_path)) {
                 o.shader_path.push_back(std::move(directory));
             }
             break;
@@ -355,18 +357,6 @@ std::string frame_file_name(const std::string& pattern, int frame) {
         digits.insert(0, end - begin - digits.size(), '0');
     }
     return pattern.substr(0, begin) + digits + pattern.substr(end);
-}
-
-std::vector<std::string> split_path(const std::string& path) {
-    std::vector<std::string> directories;
-    for (std::size_t begin = 0; begin <= path.size();) {
-        const std::size_t end = std::min(path.find(':', begin), path.size());
-        if (end > begin) {
-            directories.push_back(path.substr(begin, end - begin));
-        }
-        begin = end + 1;
-    }
-    return directories;
 }
 
 } // namespace trace

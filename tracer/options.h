@@ -50,7 +50,5 @@ struct ParsedOptions {
 [[nodiscard]] bool wants_frame(const RenderOptions& options, int frame);
 // Runs of '#' become the frame number, padded with zeros to their length.
 [[nodiscard]] std::string frame_file_name(const std::string& pattern, int frame);
-// Directories separated by ':'; empty ones are left out.
-[[nodiscard]] std::vector<std::string> split_path(const std::string& path);
 
 } // namespace trace

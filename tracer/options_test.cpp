@@ -80,8 +80,9 @@ TEST(RenderOptions, HelpNamesEverySwitch) {
 }
 
 TEST(RenderOptions, Paths) {
-    EXPECT_EQ(split_path("a::b/c:"), (std::vector<std::string>{"a", "b/c"}));
-    EXPECT_TRUE(split_path("").empty());
+    EXPECT_EQ(parse({"-shaders", "a::b/c:", "-shaders", "lib.slpkg"}).options.shader_path,
+              (std::vector<std::string>{"a", "b/c", "lib.slpkg"}));
+    EXPECT_TRUE(parse({"-shaders", ""}).options.shader_path.empty());
 }
 
 } // namespace

@@ -5,9 +5,12 @@
 #include "ribtools/reader.h"
 #include "runtime/base/diag.h"
 #include "runtime/base/file.h"
+#include "runtime/base/interrupt.h"
+#include "runtime/base/module.h"
+#include "runtime/base/parallel.h"
+#include "runtime/base/search_path.h"
 #include "slc/driver.h"
 #include "tracer/display.h"
-#include "tracer/interrupt.h"
 #include "tracer/live_display.h"
 #include "tracer/options.h"
 #include "tracer/renderer.h"
@@ -29,18 +32,11 @@ enum ExitCode { exit_done = 0, exit_input = 1, exit_usage = 2, exit_environment 
 
 // --- where things are
 
-// The directory this program lies in: installed files are found from there.
-fs::path program_directory() {
-    std::error_code error;
-    const fs::path program = fs::read_symlink("/proc/self/exe", error);
-    return error ? fs::path() : program.parent_path();
-}
-
 // Installed: dist/bin/render and dist/share/perigee/shaders; in the build tree shaders lie beside
 // this folder.
 std::vector<std::string> installed_shaders() {
     std::vector<std::string> found;
-    const fs::path here = program_directory();
+    const fs::path here = base::program_directory();
     for (const fs::path& directory :
          {here / ".." / "share" / "perigee" / "shaders", here / ".." / "shaders"}) {
         std::error_code error;
@@ -53,7 +49,7 @@ std::vector<std::string> installed_shaders() {
 
 std::vector<std::string> directories_from(const char* variable) {
     const char* value = std::getenv(variable);
-    return value != nullptr ? trace::split_path(value) : std::vector<std::string>();
+    return value != nullptr ? base::expand_search_path(value) : std::vector<std::string>();
 }
 
 std::vector<std::string> default_shader_path() {
@@ -103,6 +99,8 @@ rib::Config reader_config(const trace::RenderOptions& options) {
     config.default_paths["shader"] = default_shader_path();
     config.default_paths["texture"] = directories_from("TEXTURES");
     config.default_paths["archive"] = directories_from("ARCHIVES");
+    config.default_paths["procedural"] = directories_from("PROCEDURALS");
+    config.default_paths["display"] = directories_from("DISPLAYS");
     config.allow_programs = options.allow_programs;
     config.defaults = rib_defaults(options);
     config.override_options = [&options](rib::Options& o) { override_options(options, o); };
@@ -113,10 +111,23 @@ rib::Config reader_config(const trace::RenderOptions& options) {
 }
 
 // Shaders found as source are compiled for this machine only.
-slc::ObjectOptions compile_options() {
+slc::ObjectOptions compile_options(const std::string& index_dir, const rt::Cancelled& cancelled) {
     slc::ObjectOptions options;
     options.native_only = true;
+    options.index_dir = index_dir;
+    options.front.cancelled = cancelled;
     return options;
+}
+
+std::uint64_t cache_bytes(base::Diag& diag) {
+    const char* text = std::getenv("PERIGEE_CACHE_SIZE");
+    const auto size = text != nullptr ? rt::parse_cache_size(text) : rt::default_cache_bytes;
+    if (!size) {
+        diag.report(base::Severity::Warning, base::Code::Range, {},
+                    std::string("PERIGEE_CACHE_SIZE: '") + text +
+                        "' is no size like 200M or 2G; 512M is used");
+    }
+    return size.value_or(rt::default_cache_bytes);
 }
 
 // What the user named: switches, environment, the current directory, the installation.
@@ -155,26 +166,31 @@ trace::LiveSettings live_settings(const trace::RenderOptions& options, base::Dia
     return settings;
 }
 
-trace::RendererConfig renderer_config(const trace::RenderOptions& options) {
+trace::RendererConfig renderer_config(const trace::RenderOptions& options, base::Diag& diag) {
     trace::RendererConfig config;
     config.settings.num_threads = options.num_threads;
     config.settings.progress = options.progress;
-    config.settings.interrupted = trace::is_interrupted;
+    config.settings.interrupted = base::is_interrupted;
     config.settings.keep_existing = options.safe;
     config.settings.trace_pixels = options.trace_pixels;
     config.settings.checkpoint = options.checkpoint;
     config.shaders.search_path = installed_shaders();
     config.shaders.trusted = trusted_directories(options);
     config.shaders.trust_all = options.allow_programs;
-    config.shaders.cache_dir = rt::default_cache_dir();
-    config.shaders.compile = [](const std::string& sl_path, const std::string& slo_path,
-                                base::Diag& diag) {
-        return slc::compile_to_object(sl_path, slo_path, compile_options(), diag);
+    config.shaders.cache_bytes = cache_bytes(diag);
+    config.shaders.cache_dir = config.shaders.cache_bytes > 0 ? rt::default_cache_dir() : "";
+    config.shaders.num_threads = base::thread_count(options.num_threads);
+    config.shaders.interrupted = base::is_interrupted;
+    config.shaders.compile = [](const std::string& sl_path, base::Diag& said,
+                                const rt::Cancelled& cancelled) {
+        return slc::compile_to_bytes(sl_path, compile_options({}, cancelled), said);
     };
-    config.shaders.cache_key = [](const std::string& sl_path, base::Diag& diag) {
-        return slc::object_key(sl_path, compile_options(), diag);
-    };
-    config.shader_path_first = options.shader_path;
+    config.shaders.cache_key =
+        [index_dir = config.shaders.cache_dir](const std::string& sl_path, base::Diag& said,
+                                               const rt::Cancelled& cancelled) {
+            return slc::object_key(sl_path, compile_options(index_dir, cancelled), said);
+        };
+    config.shaders.path_first = options.shader_path;
     return config;
 }
 
@@ -209,7 +225,7 @@ rib::ReadStatus read_all(rib::Reader& reader, trace::Renderer& renderer,
                          const trace::RenderOptions& options, base::Diag& diag) {
     rib::ReadStatus worst = read_preludes(reader, options);
     for (const std::string& file : options.files) {
-        if (worst == rib::ReadStatus::Stopped || trace::is_interrupted()) {
+        if (worst == rib::ReadStatus::Stopped || base::is_interrupted()) {
             break;
         }
         if (options.verbose) {
@@ -264,24 +280,25 @@ int run(const trace::RenderOptions& options, const std::vector<const char*>& arg
         diag.set_threshold(base::Severity::Error);
     }
     report_later_switches(options, diag);
-    trace::catch_interrupts();
+    base::catch_interrupts();
     trace::LiveDisplay live(live_settings(options, diag), diag);
     if (options.show) {
         live.start(); // early: the address can be opened while the scene is read
     }
-    trace::RendererConfig config = renderer_config(options);
+    trace::RendererConfig config = renderer_config(options, diag);
     config.settings.live = &live;
     trace::Renderer renderer(std::move(config), diag);
     rib::Reader reader(renderer, diag, reader_config(options));
     const rib::ReadStatus status = read_all(reader, renderer, options, diag);
-    if (trace::is_interrupted()) {
-        live.finish(trace::is_interrupted); // pages are told
+    if (base::is_interrupted()) {
+        live.finish(base::is_interrupted); // pages are told
     }
-    trace::finish_interrupt();
+    renderer.stop();
+    base::finish_interrupt();
     trace::RunRecord& record = renderer.finish();
     record.arguments.assign(arguments.begin(), arguments.end());
     const bool reported = report_run(options, record, diag);
-    live.finish(trace::is_interrupted); // Ctrl-C ends the showing only: the work is done
+    live.finish(base::is_interrupted); // Ctrl-C ends the showing only: the work is done
     return reported ? exit_code(status, renderer, options, diag) : exit_environment;
 }
 

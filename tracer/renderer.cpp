@@ -1,41 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/renderer.h"
 
+#include "ribtools/search_path.h"
+#include "tracer/shader_set.h"
+
 #include <algorithm>
 #include <filesystem>
 
 namespace trace {
 
 Renderer::Renderer(RendererConfig config, base::Diag& diag)
-    : config_(std::move(config)), diag_(diag) {}
+    : config_(std::move(config)), diag_(diag), library_(config_.shaders, strings_, diag) {}
 Renderer::~Renderer() = default;
 
-// -shaders, then what the RIB says, then the installed shaders; each directory once.
-rt::ShaderLibrary& Renderer::library_for(const rib::Options& options) {
-    std::vector<std::string> path;
-    const auto add = [&path](const std::vector<std::string>& directories) {
-        for (const std::string& directory : directories) {
-            if (std::find(path.begin(), path.end(), directory) == path.end()) {
-                path.push_back(directory);
-            }
-        }
-    };
-    add(config_.shader_path_first);
-    if (const auto from_rib = options.search_paths.find("shader");
-        from_rib != options.search_paths.end()) {
-        add(from_rib->second);
+void Renderer::shader_named(const rib::ShaderCall& call, rib::ShaderRole role) {
+    const bool is_there = role == rib::ShaderRole::Surface || !is_null_shader(call);
+    if (ShaderSet::uses(role) && is_there) {
+        library_.prefetch(call.name, call.pos, *call.search_path);
     }
-    add(config_.shaders.search_path);
-    const auto it = std::find_if(libraries_.begin(), libraries_.end(),
-                                 [&](const auto& item) { return item.first == path; });
-    if (it != libraries_.end()) {
-        return *it->second;
-    }
-    rt::ShaderLibrary::Config config = config_.shaders;
-    config.search_path = path;
-    libraries_.emplace_back(
-        path, std::make_unique<rt::ShaderLibrary>(std::move(config), strings_, diag_));
-    return *libraries_.back().second;
 }
 
 bool Renderer::render(std::unique_ptr<rib::Scene> scene) {
@@ -87,8 +69,8 @@ FrameResult Renderer::render_recorded(const rib::Scene& scene) {
     frame.number = scene.options.frame;
     frame.is_numbered = scene.options.in_frame;
     frame.options = frame_options(scene.options);
-    const FrameResult result = render_frame(
-        scene, config_.settings, {library_for(scene.options), strings_, diag_, frame.stats});
+    const FrameResult result =
+        render_frame(scene, config_.settings, {library_, strings_, diag_, frame.stats});
     frame.result = result_text(result);
     frame.stats.amounts[Amount::peak_bytes] = peak_memory_bytes();
     frame.num_messages = message_counts(diag_);
@@ -126,11 +108,10 @@ bool source_exists(const std::string& name, const rib::Options& options) {
     if (std::filesystem::exists(name, error)) {
         return true;
     }
-    const auto path = options.search_paths.find("texture");
-    return path != options.search_paths.end() &&
-           std::any_of(path->second.begin(), path->second.end(), [&](const std::string& directory) {
-               return std::filesystem::exists(std::filesystem::path(directory) / name, error);
-           });
+    const std::vector<std::string> path = rib::search_directories(options, "texture");
+    return std::any_of(path.begin(), path.end(), [&](const std::string& directory) {
+        return std::filesystem::exists(std::filesystem::path(directory) / name, error);
+    });
 }
 
 } // namespace

@@ -18,10 +18,9 @@ namespace trace {
 
 struct RendererConfig {
     RenderSettings settings;
-    // How shaders are compiled and cached. Its search_path comes last: the standard shaders are
-    // found whatever path a RIB sets.
+    // How shaders are found, compiled and cached. The path of -shaders comes first, the standard
+    // shaders last, whatever path a RIB sets between them.
     rt::ShaderLibrary::Config shaders;
-    std::vector<std::string> shader_path_first; // -shaders
 };
 
 class Renderer : public rib::Backend {
@@ -29,9 +28,13 @@ public:
     Renderer(RendererConfig config, base::Diag& diag);
     ~Renderer() override;
 
+    void shader_named(const rib::ShaderCall& call, rib::ShaderRole role) override;
     // False when reading should end: interrupted.
     bool render(std::unique_ptr<rib::Scene> scene) override;
     bool make_texture(const rib::TextureRequest& request) override;
+
+    // Ends what goes on in the background: the process may end any moment after it.
+    void stop() { library_.stop(); }
 
     // The file that is read from now on, and that of its worlds without Display.
     void set_file(std::string name, std::string default_output);
@@ -42,14 +45,11 @@ public:
     [[nodiscard]] int num_frames() const { return num_frames_; }
 
 private:
-    rt::ShaderLibrary& library_for(const rib::Options& options);
-
     RendererConfig config_;
     base::Diag& diag_;
     rt::StringTable strings_;
-    // A library per search path met: objects stay loaded, and a path change cannot find an older
-    // shader.
-    std::vector<std::pair<std::vector<std::string>, std::unique_ptr<rt::ShaderLibrary>>> libraries_;
+    rt::ShaderLibrary library_;
+
     FrameResult render_recorded(const rib::Scene& scene);
 
     RunRecord run_;

@@ -54,10 +54,6 @@ void transform_matrices(const Space& space, std::vector<float>& values) {
     }
 }
 
-bool is_null(const rib::ShaderCall& call) {
-    return call.name.empty() || call.name == "null";
-}
-
 // Names that are no identifiers of the Shading Language but are met in shader calls, and the
 // parameter they mean.
 struct ParamAlias {
@@ -112,6 +108,10 @@ rib::ParamDecl declaration(const rib::Param& param, const sl_param* wanted) {
 }
 
 } // namespace
+
+bool is_null_shader(const rib::ShaderCall& call) {
+    return call.name.empty() || call.name == "null";
+}
 
 rt::BoundValue bound_value(const rib::Param& param, const sl_object& object, const Space& space) {
     rt::BoundValue value;
@@ -216,6 +216,21 @@ ShaderSet::ShaderSet(const ShaderSources& sources)
 
 ShaderSet::~ShaderSet() = default;
 
+bool ShaderSet::uses(rib::ShaderRole role) {
+    switch (role) {
+    case rib::ShaderRole::Surface:
+    case rib::ShaderRole::Atmosphere:
+    case rib::ShaderRole::Light:
+    case rib::ShaderRole::Imager:
+        return true;
+    case rib::ShaderRole::Displacement:
+    case rib::ShaderRole::Interior:
+    case rib::ShaderRole::Exterior:
+        return false; // not_done.cpp says so
+    }
+    return false;
+}
+
 // Exporters write one Surface per object: calls with equal names and values share an instance where
 // the place of the call makes no difference, so that their points fill batches together.
 const ShaderEntry* ShaderSet::shareable(const rib::Scene& scene, rib::ShaderId id) const {
@@ -231,7 +246,7 @@ void ShaderSet::load(const ShaderSources& sources, rib::ShaderId id, sl_shader_t
     }
     tried_[id] = true;
     const rib::ShaderCall& call = sources.scene.shaders[id];
-    if (is_null(call) && type != SL_SHADER_surface) {
+    if (is_null_shader(call) && type != SL_SHADER_surface) {
         return;
     }
     const ShaderEntry* shared = shareable(sources.scene, id);
@@ -239,7 +254,8 @@ void ShaderSet::load(const ShaderSources& sources, rib::ShaderId id, sl_shader_t
         entries_[id] = shared;
         return;
     }
-    const rt::ShaderObject* object = sources.library.find(call.name, type, call.pos);
+    const rt::ShaderObject* object =
+        sources.library.find(call.name, type, call.pos, *call.search_path);
     if (object == nullptr) { // the library has said why
         return;
     }

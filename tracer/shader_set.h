@@ -5,6 +5,7 @@
 // message; other shaders are left out. Immutable once made.
 #pragma once
 
+#include "ribtools/backend.h"
 #include "ribtools/scene.h"
 #include "runtime/shader.h"
 #include "tracer/spaces.h"
@@ -42,6 +43,9 @@ public:
     explicit ShaderSet(const ShaderSources& sources);
     ~ShaderSet();
 
+    // False for shaders that nothing runs.
+    [[nodiscard]] static bool uses(rib::ShaderRole role);
+
     // nullptr: none given, missing, broken or "null" where that means nothing to do.
     [[nodiscard]] const ShaderEntry* get(rib::ShaderId id) const {
         return id < entries_.size() ? entries_[id] : nullptr;
@@ -67,6 +71,9 @@ private:
     std::unordered_map<const sl_object*, std::uint32_t> number_of_object_;
     const ShaderEntry* default_surface_ = nullptr;
 };
+
+// No name, or "null": no shader, unless it is a surface.
+[[nodiscard]] bool is_null_shader(const rib::ShaderCall& call);
 
 // A parameter of a request as a shader of this interface binds it: points, vectors, normals and
 // matrices taken from `space` to camera space, hpoints divided; a name that was never declared

@@ -81,6 +81,10 @@ std::string Diag::file_name(std::uint32_t id) const {
 }
 
 void Diag::report(Severity severity, Code code, SourcePos pos, std::string_view text) {
+    if (deferred_) {
+        keep({}, severity, code, pos, text);
+        return;
+    }
     const std::string place = place_text(file_name(pos.file_id), pos);
     const std::lock_guard lock(mutex_);
     record(severity, code, place, text);
@@ -89,6 +93,10 @@ void Diag::report(Severity severity, Code code, SourcePos pos, std::string_view 
 
 void Diag::report_once(std::string_view key, Severity severity, Code code, SourcePos pos,
                        std::string_view text) {
+    if (deferred_) {
+        keep(key, severity, code, pos, text);
+        return;
+    }
     const std::string place = place_text(file_name(pos.file_id), pos);
     const std::lock_guard lock(mutex_);
     const auto [it, is_new] = seen_.try_emplace(std::string(key), no_record);
@@ -102,6 +110,10 @@ void Diag::report_once(std::string_view key, Severity severity, Code code, Sourc
 
 bool Diag::report_few(std::string_view key, std::uint64_t most, Severity severity, Code code,
                       SourcePos pos, std::string_view text) {
+    if (deferred_) {
+        keep({}, severity, code, pos, text);
+        return true;
+    }
     const std::string file = file_name(pos.file_id);
     const std::string place = place_text(file, pos);
     const std::lock_guard lock(mutex_);
@@ -187,6 +199,33 @@ std::size_t Diag::record(Severity severity, Code code, const std::string& place,
         found.places.push_back(place);
     }
     return it->second;
+}
+
+void Diag::keep(std::string_view key, Severity severity, Code code, SourcePos pos,
+                std::string_view text) {
+    const std::string file = file_name(pos.file_id);
+    const std::lock_guard lock(mutex_);
+    ++counts_[static_cast<int>(severity)];
+    if (code != Code::None) {
+        last_ = code;
+    }
+    kept_.push_back({std::string(key), file, std::string(text), pos, severity, code});
+}
+
+void Diag::deliver(Diag& to) {
+    std::vector<Kept> kept;
+    {
+        const std::lock_guard lock(mutex_);
+        kept.swap(kept_);
+    }
+    for (Kept& message : kept) {
+        message.pos.file_id = message.file.empty() ? 0 : to.file_id(message.file);
+        if (message.key.empty()) {
+            to.report(message.severity, message.code, message.pos, message.text);
+        } else {
+            to.report_once(message.key, message.severity, message.code, message.pos, message.text);
+        }
+    }
 }
 
 void Diag::set_handler(ErrorHandler handler) {

@@ -60,6 +60,9 @@ struct MessageRecord {
 class Diag {
 public:
     explicit Diag(std::FILE* out = stderr) : out_(out) {}
+    // For work done ahead of its turn: messages are kept until deliver() instead of being printed.
+    enum class Deferred : std::uint8_t { Yes };
+    explicit Diag(Deferred) : out_(nullptr), deferred_(true) {}
     Diag(const Diag&) = delete;
     Diag& operator=(const Diag&) = delete;
 
@@ -79,6 +82,13 @@ public:
                     SourcePos pos, std::string_view text);
     // Says how many more of each kind there were, once.
     void tell_repeated();
+    // Reports everything that was kept to another Diag, as if it happened now, and forgets it.
+    void deliver(Diag& to);
+    // The same place, for messages to this Diag.
+    [[nodiscard]] SourcePos place_from(const Diag& other, SourcePos pos) {
+        pos.file_id = pos.file_id == 0 ? 0 : file_id(other.file_name(pos.file_id));
+        return pos;
+    }
 
     void set_handler(ErrorHandler handler);
     // True after an error arrived while the handler is Abort: the caller winds the run down.
@@ -124,6 +134,16 @@ private:
     std::vector<Repeated> repeated_;
     std::unordered_map<std::string, std::size_t> repeated_index_; // by key of report_few()
     std::unordered_map<std::string, std::size_t> seen_; // key of report_once(): its record
+    struct Kept {
+        std::string key, file, text; // key "": not a report_once
+        SourcePos pos;
+        Severity severity;
+        Code code;
+    };
+    bool deferred_ = false;
+    std::vector<Kept> kept_; // if deferred
+    void keep(std::string_view key, Severity severity, Code code, SourcePos pos,
+              std::string_view text);
 };
 
 // "line 12" or "byte 345", for messages that refer to another place.

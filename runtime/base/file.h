@@ -14,6 +14,9 @@ namespace base {
 [[nodiscard]] std::optional<std::string> read_file(const std::string& path,
                                                    std::size_t max_bytes = std::size_t{1} << 30);
 
+// All of it, whatever signals come; false with errno set if that fails.
+[[nodiscard]] bool write_all(int fd, std::string_view bytes);
+
 // A name in the same directory as `path`, unique among processes and threads.
 [[nodiscard]] std::string temporary_beside(const std::string& path);
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracer/interrupt.h"
+#include "runtime/base/interrupt.h"
 
 #include <csignal>
 #include <fcntl.h>
 #include <initializer_list>
 #include <unistd.h>
 
-namespace trace {
+namespace base {
 
 namespace {
 
@@ -63,4 +63,4 @@ void finish_interrupt() {
     }
 }
 
-} // namespace trace
+} // namespace base

@@ -4,7 +4,7 @@
 // files that grow too large are errors of the write, not deadly signals.
 #pragma once
 
-namespace trace {
+namespace base {
 
 // Call once, before work starts.
 void catch_interrupts();
@@ -15,4 +15,4 @@ void open_standard_streams();
 // Ends the process by the signal that came, so that shells and queues see it; returns if none came.
 void finish_interrupt();
 
-} // namespace trace
+} // namespace base

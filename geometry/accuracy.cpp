@@ -272,6 +272,20 @@ private:
     }
 };
 
+// Cuts off what lies behind the eye; false if that is all.
+bool clip_before_eye(V3d& a, V3d& b) {
+    constexpr double least_z = 1e-6;
+    if (a.z < least_z && b.z < least_z) {
+        return false;
+    }
+    V3d& behind = a.z < b.z ? a : b;
+    const V3d& before = a.z < b.z ? b : a;
+    if (behind.z < least_z) {
+        behind = before + (behind - before) * ((before.z - least_z) / (before.z - behind.z));
+    }
+    return true;
+}
+
 // Dense points of the four borders against the polyline of the grid.
 void measure_borders(const Grid& g, const Projector& project, PartAccuracy& out) {
     for (int side = 0; side < 4; ++side) {
@@ -290,8 +304,8 @@ void measure_borders(const Grid& g, const Projector& project, PartAccuracy& out)
             }
             double least = 1e300;
             for (int i = 0; i + 1 < n; ++i) {
-                const V3d a = vertex(i), b = vertex(i + 1);
-                if (a.z > 1e-3 && b.z > 1e-3) {
+                V3d a = vertex(i), b = vertex(i + 1);
+                if (clip_before_eye(a, b)) {
                     least =
                         std::min(least, distance_to_segment(project(p), project(a), project(b)));
                 }

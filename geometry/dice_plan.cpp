@@ -225,17 +225,16 @@ private:
     }
 
     // How often the distance of the first row must be halved. a: longest border segment, in
-    // parameters of the piece; the strip's bend goes from the border's to the largest like
-    // 1 - (1 - h)^degree.
+    // parameters of the piece, beyond which it may reach; the strip's bend goes from the border's
+    // to the largest like 1 - (1 - h)^degree.
     static int halvings(const Excess& e, double border_bend, int degree_across, double a,
                         int n_along, int n_across) {
         if (a * n_along <= 1.001) {
             return 0;
         }
-        a = std::min(a, 1.0);
         const double least = border_bend * a * a; // what no distance can better
         const double limit = std::max(1.0, 1.25 * least);
-        constexpr int most = 20;
+        constexpr int most = 30;
         int k = 0;
         for (double h = 1; k < most; ++k, h /= 2) {
             const double bend =

@@ -107,7 +107,7 @@ public:
     }
     [[nodiscard]] TraceError trace_error(const LocalPoint& at, const SurfacePoint&) const override;
     [[nodiscard]] std::size_t num_parts() const override {
-        return plain_triangles_ ? polygons_.vertices.size() / 3 : triangles_.size();
+        return fan_ > 0 ? num_corners_ / fan_ * (fan_ - 2) : triangles_.size();
     }
     [[nodiscard]] std::size_t heap_bytes() const override {
         return sizeof *this + triangles_.capacity() * sizeof(Triangle) +
@@ -141,8 +141,9 @@ private:
 
     const rib::Polygons& polygons_;
     Positions P_;
-    bool plain_triangles_ =
-        false; // every polygon is a triangle: triangles_ and normals_ stay empty
+    // Corners of every polygon, where all are fans of as many: triangles_ and normals_ stay empty.
+    // 0: they hold the triangulation.
+    std::uint32_t fan_ = 0;
     std::vector<Triangle> triangles_;
     std::vector<V3f> normals_;       // per polygon, unit, by Newell
     std::uint32_t num_vertices_ = 0; // largest index + 1
@@ -157,16 +158,22 @@ private:
         std::vector<std::uint32_t> loop_sizes;
     };
 
-    bool scan_plain_triangles(PolygonFaults& faults);
+    [[nodiscard]] std::uint32_t common_size() const;
+    bool scan_fans(std::uint32_t size, PolygonFaults& faults);
     bool gather(std::size_t first_corner, std::size_t count, Outline& outline,
                 PolygonFaults& faults);
+    static void flatten(const V3d& normal, Outline& outline);
     void add_polygon(std::uint32_t polygon, std::size_t first_corner, Outline& outline,
                      PolygonFaults& faults);
     void finish();
 
     [[nodiscard]] Triangle triangle(std::uint32_t part) const {
-        return plain_triangles_ ? Triangle{{3 * part, 3 * part + 1, 3 * part + 2}, part}
-                                : triangles_[part];
+        if (fan_ == 0) {
+            return triangles_[part];
+        }
+        const std::uint32_t polygon = part / (fan_ - 2), first = polygon * fan_;
+        const std::uint32_t k = first + 1 + part % (fan_ - 2);
+        return {{first, k, k + 1}, polygon};
     }
     [[nodiscard]] std::uint32_t vertex(std::uint32_t corner) const {
         return static_cast<std::uint32_t>(polygons_.vertices[corner]);
@@ -177,8 +184,11 @@ private:
         return {{a, b, c}, b - a, c - a};
     }
     [[nodiscard]] V3d normal(const Triangle& t, const Corners& c) const {
-        return plain_triangles_ ? normalize(cross(c.e1, c.e2)) : V3d(normals_[t.polygon]);
+        return fan_ == 3  ? normalize(cross(c.e1, c.e2))
+               : fan_ > 3 ? fan_normal(t.polygon)
+                          : V3d(normals_[t.polygon]);
     }
+    [[nodiscard]] V3d fan_normal(std::uint32_t polygon) const;
 };
 
 // Newell's sum over the outer loop, relative to its first point.
@@ -201,8 +211,8 @@ bool PolygonMesh::build(PolygonFaults& faults) {
             num_vertices_ = std::max(num_vertices_, static_cast<std::uint32_t>(v) + 1);
         }
     }
-    plain_triangles_ = scan_plain_triangles(faults);
-    if (plain_triangles_) {
+    if (const std::uint32_t size = common_size(); size > 0 && scan_fans(size, faults)) {
+        fan_ = size;
         finish();
         return true;
     }
@@ -232,26 +242,51 @@ bool PolygonMesh::build(PolygonFaults& faults) {
     return !triangles_.empty();
 }
 
-// The common case, kept without tables: only triangles, all of them usable.
-bool PolygonMesh::scan_plain_triangles(PolygonFaults& faults) {
+V3d PolygonMesh::fan_normal(std::uint32_t polygon) const {
+    const std::uint32_t first = polygon * fan_;
+    const V3d origin = P_[vertex(first)];
+    V3d n, e = P_[vertex(first + 1)] - origin;
+    for (std::uint32_t k = first + 2; k < first + fan_; ++k) {
+        const V3d next = P_[vertex(k)] - origin;
+        n += cross(e, next);
+        e = next;
+    }
+    return normalize(n);
+}
+
+// How many corners all polygons have; 0 if that differs or there are holes.
+std::uint32_t PolygonMesh::common_size() const {
     const std::size_t n = polygons_.num_loops.size();
     const auto all = [](const std::vector<std::int32_t>& v, std::int32_t x) {
         return std::all_of(v.begin(), v.end(), [x](std::int32_t y) { return y == x; });
     };
-    if (n == 0 || n != polygons_.num_vertices.size() || num_corners_ != 3 * n ||
-        n > std::numeric_limits<std::uint32_t>::max() / 3 || !all(polygons_.num_loops, 1) ||
-        !all(polygons_.num_vertices, 3)) {
-        return false;
+    if (n == 0 || n != polygons_.num_vertices.size() || !all(polygons_.num_loops, 1)) {
+        return 0;
     }
+    const std::int32_t size = polygons_.num_vertices.front();
+    const bool fits = size >= 3 && all(polygons_.num_vertices, size) &&
+                      num_corners_ == n * static_cast<std::size_t>(size) &&
+                      num_corners_ <= std::numeric_limits<std::uint32_t>::max() - 3;
+    return fits ? static_cast<std::uint32_t>(size) : 0;
+}
+
+// The common cases, kept without tables: only triangles, only convex quads, one convex polygon; all
+// of them usable.
+bool PolygonMesh::scan_fans(std::uint32_t size, PolygonFaults& faults) {
+    const auto n = static_cast<std::uint32_t>(num_corners_ / size);
+    Outline outline;
     for (std::uint32_t i = 0; i < n; ++i) {
-        for (std::uint32_t k = 3 * i; k < 3 * i + 3; ++k) {
-            const std::int32_t v = polygons_.vertices[k];
-            if (v < 0 || static_cast<std::size_t>(v) >= P_.count() || !usable(P_[vertex(k)])) {
+        if (!gather(std::size_t(i) * size, size, outline, faults)) {
+            return false;
+        }
+        const V3d normal = newell(outline.points);
+        if (size > 3) {
+            flatten(normal, outline);
+            if (!(length(normal) > 0) || !strictly_convex(outline.flat)) {
                 return false;
             }
         }
-        const Corners c = corners({{3 * i, 3 * i + 1, 3 * i + 2}, i});
-        faults.degenerate += cross(c.e1, c.e2) == V3d(); // never hit, so it may stay
+        faults.degenerate += normal == V3d(); // a triangle, never hit, so it may stay
     }
     return faults.degenerate < n;
 }
@@ -275,6 +310,16 @@ bool PolygonMesh::gather(std::size_t first_corner, std::size_t count, Outline& o
     return true;
 }
 
+// Dropping the coordinate of the largest component keeps the others as the floats they are: exact
+// predicates.
+void PolygonMesh::flatten(const V3d& normal, Outline& outline) {
+    const int axis = largest_axis(normal);
+    outline.flat.clear();
+    for (const V3d& p : outline.points) {
+        outline.flat.push_back({p[(axis + 1) % 3], p[(axis + 2) % 3]});
+    }
+}
+
 void PolygonMesh::add_polygon(std::uint32_t polygon, std::size_t first_corner, Outline& outline,
                               PolygonFaults& faults) {
     const std::size_t outer = outline.loop_sizes.empty() ? 0 : outline.loop_sizes.front();
@@ -285,13 +330,7 @@ void PolygonMesh::add_polygon(std::uint32_t polygon, std::size_t first_corner, O
         return;
     }
     normals_[polygon] = V3f(unit);
-    // Dropping the coordinate of the largest component keeps the others as the floats they are:
-    // exact predicates.
-    const int axis = largest_axis(unit);
-    outline.flat.clear();
-    for (const V3d& p : outline.points) {
-        outline.flat.push_back({p[(axis + 1) % 3], p[(axis + 2) % 3]});
-    }
+    flatten(unit, outline);
     const auto base = static_cast<std::uint32_t>(first_corner);
     if (outline.loop_sizes.size() == 1 && strictly_convex(outline.flat)) {
         for (std::uint32_t k = 1; k + 1 < outline.flat.size(); ++k) {
@@ -323,13 +362,13 @@ void PolygonMesh::tessellate(const TraceContext& context, TraceBuffer& out) {
     const std::uint32_t base = out.num_vertices();
     if (base == 0) { // a shared buffer must grow by doubling, not by each mesh
         out.xyz.reserve(3 * std::size_t(num_vertices_));
-        out.triangles.reserve(plain_triangles_ && out.may_borrow ? 0 : 3 * num_parts());
+        out.triangles.reserve(fan_ == 3 && out.may_borrow ? 0 : 3 * num_parts());
     }
     for (std::uint32_t i = 0; i < num_vertices_; ++i) {
         const V3d p = P_[i];
         out.add_vertex(usable(p) ? point(context.trace_from_object, p) : V3d());
     }
-    if (plain_triangles_ && out.may_borrow) {
+    if (fan_ == 3 && out.may_borrow) {
         // int32 and uint32 may alias; all indices were checked.
         out.borrowed = {reinterpret_cast<const std::uint32_t*>(polygons_.vertices.data()),
                         num_corners_};

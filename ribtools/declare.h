@@ -52,7 +52,7 @@ private:
     std::unordered_map<std::string, Entry, Hash, std::equal_to<>> entries_;
 };
 
-enum class OptionCategory : std::uint8_t { Option, Attribute, Hider, Approximation };
+enum class OptionCategory : std::uint8_t { Option, Attribute, Hider, Display, Approximation };
 
 struct OptionRow {
     OptionCategory category;

@@ -68,6 +68,14 @@ int ParamList::get_int(std::string_view name, int fallback) const {
     return fits ? static_cast<int>(p->floats.front()) : fallback;
 }
 
+std::vector<float> ParamList::get_numbers(std::string_view name) const {
+    const Param* p = find(name);
+    if (!p) {
+        return {};
+    }
+    return p->floats.empty() ? std::vector<float>(p->ints.begin(), p->ints.end()) : p->floats;
+}
+
 std::string ParamList::get_string(std::string_view name, std::string_view fallback) const {
     const Param* p = find(name);
     return p && !p->strings.empty() ? p->strings.front() : std::string(fallback);

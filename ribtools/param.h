@@ -74,6 +74,8 @@ struct ParamList {
     // First float / int / string of a parameter, or the default.
     [[nodiscard]] float get_float(std::string_view name, float fallback) const;
     [[nodiscard]] int get_int(std::string_view name, int fallback) const;
+    // All numbers of a parameter, integers as floats; empty without one.
+    [[nodiscard]] std::vector<float> get_numbers(std::string_view name) const;
     [[nodiscard]] std::string get_string(std::string_view name, std::string_view fallback) const;
     friend bool operator==(const ParamList&, const ParamList&) = default;
 };

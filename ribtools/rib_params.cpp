@@ -18,7 +18,9 @@ std::string quote(std::string_view text) {
 OptionCategory category_of(const Request& request) {
     return request.id == RequestId::Option      ? OptionCategory::Option
            : request.id == RequestId::Attribute ? OptionCategory::Attribute
-                                                : OptionCategory::Hider;
+           : request.id == RequestId::Display || request.id == RequestId::DisplayChannel
+               ? OptionCategory::Display
+               : OptionCategory::Hider;
 }
 
 bool is_numeric(ParamType type) {

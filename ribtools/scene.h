@@ -330,7 +330,12 @@ struct Options {
     Quantize depth_quantize{0, 0, 0, 0};
     std::map<std::string, Quantize> other_quantize;
     std::vector<Display> displays; // first = primary; empty: the command line decides
+    // DisplayChannel: first the channel itself as a parameter without values (guessed: its type is
+    // not given).
     std::vector<ParamList> display_channels;
+    // What Declare and the predeclared names say about names in the modes of displays and in
+    // channels.
+    std::map<std::string, ParamDecl> declared_outputs;
     std::string hider = "hidden";
     ParamList hider_params;
     float relative_detail = 1;

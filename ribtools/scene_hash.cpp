@@ -251,14 +251,14 @@ void Hasher::add(const Options& options) {
                  clipping_planes, fstop, focal_length, focal_distance, shutter_open, shutter_close,
                  pixel_variance, xsamples, ysamples, samples_pos, filter, filter_width, filter_pos,
                  gain, gamma, imager, color_quantize, depth_quantize, other_quantize, displays,
-                 display_channels, hider, hider_params, relative_detail, color_samples, user,
-                 search_paths] = options;
+                 display_channels, declared_outputs, hider, hider_params, relative_detail,
+                 color_samples, user, search_paths] = options;
     all(frame, in_frame, xres, yres, pixel_aspect, crop, frame_aspect, has_screen_window,
         screen_window, projection, projection_params, fov_deg, near_clip, far_clip, clipping_planes,
         fstop, focal_length, focal_distance, shutter_open, shutter_close, pixel_variance, xsamples,
         ysamples, filter, filter_width, gain, gamma, imager, color_quantize, depth_quantize,
-        other_quantize, displays, display_channels, hider, hider_params, relative_detail,
-        color_samples, user, search_paths);
+        other_quantize, displays, display_channels, declared_outputs, hider, hider_params,
+        relative_detail, color_samples, user, search_paths);
     static_cast<void>(samples_pos);
     static_cast<void>(filter_pos);
 }

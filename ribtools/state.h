@@ -98,6 +98,7 @@ private:
     void restore(BlockKind kind);
     void end_world(bool render);
     void resolve_options();
+    void declare_outputs(Options& o) const;
     void bring_into_world();
 
     // --- shared records ---

@@ -177,6 +177,7 @@ void State::do_WorldBegin(Request& request) {
 // Defaults that depend on other options (ri.md 6.3).
 void State::resolve_options() {
     Options& o = scene_->options;
+    declare_outputs(o);
     if (!o.has_screen_window) {
         const float viewport_aspect =
             static_cast<float>(o.xres) * o.pixel_aspect / static_cast<float>(o.yres);

@@ -241,12 +241,35 @@ void State::do_Display(Request& request) {
 void State::do_DisplayChannel(Request& request) {
     Param channel;
     const Declaration d = parse_inline_declaration(request.string(0));
-    channel.name = d.error.empty() ? d.name : request.string(0);
+    channel.guessed = !d.error.empty();
+    channel.name = channel.guessed ? request.string(0) : d.name;
     channel.decl = d.decl;
     channel.pos = request.pos;
     ParamList list = std::move(request.params);
     list.params.insert(list.params.begin(), std::move(channel));
     options_.display_channels.push_back(std::move(list));
+}
+
+// The dictionary as it stands when the world begins: Declare may follow the Display that needs it.
+void State::declare_outputs(Options& o) const {
+    const auto note = [&](std::string_view name) {
+        const Dictionary::Entry* entry = dictionary_.find(name);
+        if (entry && !entry->illegal) {
+            o.declared_outputs.insert_or_assign(std::string(name), entry->decl);
+        }
+    };
+    for (const Display& display : o.displays) {
+        std::string_view rest = display.mode;
+        while (!rest.empty()) {
+            const std::size_t end = std::min(rest.find_first_of(", \t"), rest.size());
+            note(rest.substr(0, end));
+            rest.remove_prefix(std::min(end + 1, rest.size()));
+        }
+    }
+    for (const ParamList& channel : o.display_channels) {
+        note(channel.params.front().name);
+        note(channel.get_string("source", ""));
+    }
 }
 
 // --- other options ---

@@ -8,6 +8,7 @@ worst component. Expectations come from our own case files and are as trusted as
 
 import math
 import os
+import struct
 
 import pictures
 
@@ -95,8 +96,11 @@ class PictureFunctions:
         return os.path.join(self.folder, name if "/" in name else os.path.join("main", name))
 
     def picture(self, name):
+        """`out.exr:N` is the layer N of it."""
         if name not in self.cache:
-            self.cache[name] = pictures.read_picture(self.path(name))
+            file, _, layer = name.partition(":")
+            self.cache[name] = (self.picture(file).layer(layer) if layer
+                                else pictures.read_picture(self.path(file)))
         return self.cache[name]
 
     def pixel(self, name, x, y):
@@ -169,8 +173,19 @@ class PictureFunctions:
     def levels(self, name):
         return self.picture(name).levels
 
+    def parts(self, name):
+        return self.picture(name).parts
+
+    def kind(self, name, channel):
+        """How OpenEXR holds a channel: half or float."""
+        return {"e": "half", "f": "float", "I": "integer"}[self.picture(name).kinds[channel]]
+
     def tag(self, name, key):
         return self.picture(name).tags.get(key)
+
+    def window(self, name, key):
+        """OpenEXR: dataWindow or displayWindow as (x0, y0, x1, y1), corners included."""
+        return struct.unpack("<4i", self.picture(name).tags[key])
 
     def file_bytes(self, name):
         with open(self.path(name), "rb") as file:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads the pictures that Perigee writes, with nothing but the Python standard library.
 
-In: a TIFF, PNG or OpenEXR file. Out: a Picture, values as floats, row 0 at the top. Integer formats are
+In: a TIFF, PNG, OpenEXR, zfile or PPM file. Out: a Picture, values as floats, row 0 at the top. Integer formats are
 scaled to 0..1 (255 or 65535 is 1); the raw integers are in Picture.levels. The readers share no code with the
 writers, so a wrong file cannot look right. Sources: TIFF 6.0; PNG (ISO 15948); OpenEXR file layout.
 """
@@ -24,6 +24,17 @@ class Picture:
         self.rows = rows
         self.levels = levels  # 255 or 65535 for integer files, None for float
         self.tags = {}
+        self.parts = []  # OpenEXR: names of the parts
+        self.kinds = {}  # OpenEXR: "e" half, "f" float, by the name of the channel in the file
+
+    def layer(self, name):
+        """The channels whose names are `name` or begin with `name.`, as a picture."""
+        chosen = [i for i, c in enumerate(self.channels) if c == name or c.startswith(name + ".")]
+        if not chosen:
+            raise PictureError(f"no channel {name} among {', '.join(self.channels)}")
+        n = len(self.channels)
+        rows = [[row[x * n + c] for x in range(self.width) for c in chosen] for row in self.rows]
+        return Picture(self.width, self.height, [self.channels[c] for c in chosen], rows, self.levels)
 
     def at(self, x, y):
         n = len(self.channels)
@@ -46,9 +57,13 @@ def read_picture(path):
             return read_tiff(data)
         if data[:4] == b"\x76\x2f\x31\x01":
             return read_exr(data)
+        if data[:4] == struct.pack("<I", 0x2F0867AB):
+            return read_zfile(data)
+        if data[:2] in (b"P5", b"P6"):
+            return read_map(data)
     except (struct.error, IndexError, zlib.error) as error:
         raise PictureError(f"{path} is damaged: {error}") from error
-    raise PictureError(f"{path} is neither TIFF, PNG nor OpenEXR")
+    raise PictureError(f"{path} is neither TIFF, PNG, OpenEXR, zfile nor a portable map")
 
 
 # --- PNG ------------------------------------------------------------------------------------------
@@ -272,9 +287,37 @@ EXR_BLOCK_LINES = {0: 1, 1: 1, 2: 1, 3: 16}  # none, RLE, ZIPS, ZIP
 
 
 def read_exr(data):
-    if struct.unpack_from("<I", data, 4)[0] & 0x1A00:
-        raise PictureError("OpenEXR: tiled, deep and multi-part files are not read")
-    header, offset = exr_header(data)
+    """All parts of a file as one picture, which must agree in size. tags: those of the first part."""
+    flags = struct.unpack_from("<I", data, 4)[0]
+    if flags & 0x0A00:
+        raise PictureError("OpenEXR: tiled and deep files are not read")
+    multi_part = bool(flags & 0x1000)
+    headers, offset = [], 8
+    while not headers or (multi_part and data[offset]):
+        header, offset = exr_header(data, offset)
+        headers.append(header)
+    offset += multi_part
+    channels, columns = [], []
+    for header in headers:
+        part_channels, lines, offset = exr_part(data, header, offset, multi_part)
+        channels += part_channels
+        columns.append(lines)
+    if len({len(lines) for lines in columns}) != 1:
+        raise PictureError("OpenEXR: parts differ in height")
+    names, order = exr_order(channels)
+    rows = []
+    for parts in zip(*columns):
+        row = [values for part in parts for values in part]
+        rows.append([row[c][x] for x in range(len(row[0])) for c in order])
+    picture = Picture(len(rows[0]) // len(order), len(rows), names, rows)
+    picture.tags = headers[0]
+    picture.parts = [header["name"].decode("latin-1") for header in headers if "name" in header]
+    picture.kinds = {name: code for name, code, _ in channels}
+    return picture
+
+
+def exr_part(data, header, offset, multi_part):
+    """Its channels, per line a list of their values, and where the next part's table begins."""
     x0, y0, x1, y1 = struct.unpack("<4i", header["dataWindow"])
     width, height = x1 - x0 + 1, y1 - y0 + 1
     compression = header["compression"][0]
@@ -285,20 +328,16 @@ def read_exr(data):
     blocks = (height + lines - 1) // lines
     rows = [None] * height
     for at in struct.unpack_from(f"<{blocks}Q", data, offset):
+        at += 4 * multi_part  # the number of the part
         y, size = struct.unpack_from("<iI", data, at)
         count = min(lines, height - (y - y0))
         plain = exr_inflate(data[at + 8:at + 8 + size], compression, channels, width * count)
         exr_rows(plain, channels, width, y - y0, count, rows)
-    names, order = exr_order(channels)
-    for i, row in enumerate(rows):
-        rows[i] = [row[c][x] for x in range(width) for c in order]
-    picture = Picture(width, height, names, rows)
-    picture.tags = header
-    return picture
+    return channels, rows, offset + 8 * blocks
 
 
-def exr_header(data):
-    header, offset = {}, 8
+def exr_header(data, offset):
+    header = {}
     while data[offset]:
         end = data.index(b"\0", offset)
         name = data[offset:end].decode("latin-1")
@@ -363,3 +402,38 @@ def exr_order(channels):
     wanted = [name for name in ("R", "G", "B", "A", "Z", "Y") if name in names]
     ordered = wanted + [name for name in names if name not in wanted]
     return [n.lower() if n in wanted else n for n in ordered], [names.index(n) for n in ordered]
+
+
+# --- others ---------------------------------------------------------------------------------------
+
+def read_zfile(data):
+    """Pixar's depth file; tags worldtoscreen and worldtocamera are rows of 16 floats."""
+    width, height = struct.unpack_from("<hh", data, 4)
+    values = struct.unpack_from(f"<{width * height}f", data, 136)
+    picture = Picture(width, height, ["z"], [values[y * width:(y + 1) * width] for y in range(height)])
+    picture.tags = {"worldtoscreen": struct.unpack_from("<16f", data, 8),
+                    "worldtocamera": struct.unpack_from("<16f", data, 72)}
+    return picture
+
+
+def read_map(data):
+    """Binary PGM and PPM."""
+    fields, offset = [], 2
+    while len(fields) < 3:
+        while data[offset:offset + 1].isspace():
+            offset += 1
+        if data[offset:offset + 1] == b"#":
+            offset = data.index(b"\n", offset)
+            continue
+        end = offset
+        while not data[end:end + 1].isspace():
+            end += 1
+        fields.append(int(data[offset:end]))
+        offset = end
+    width, height, levels = fields
+    channels = ["r", "g", "b"] if data[:2] == b"P6" else ["y"]
+    row = width * len(channels)
+    code = f">{row}{'H' if levels > 255 else 'B'}"
+    rows = [[v / levels for v in struct.unpack_from(code, data, offset + 1 + y * struct.calcsize(code))]
+            for y in range(height)]
+    return Picture(width, height, channels, rows, levels)

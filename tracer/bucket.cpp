@@ -40,11 +40,12 @@ VisibilityOptions visibility_options(const rib::Options& options) {
 
 BucketRenderer::BucketRenderer(const FrameContext& frame, const Camera& camera,
                                const Sampler& sampler, const ShadingClasses& classes,
-                               const VisibilityOptions& options)
-    : frame_(frame), camera_(camera), sampler_(sampler), classes_(classes), options_(options),
-      opaque_counts_for_depth_(
-          *std::max_element(options.depth_from.begin(), options.depth_from.end()) <= 1),
-      shader_(frame, camera, classes, thread_) {}
+                               const OutputBindings* outputs, const VisibilityOptions& options)
+    : frame_(frame), camera_(camera), sampler_(sampler), classes_(classes),
+      outputs_(outputs != nullptr && outputs->num_channels() > 0 ? outputs : nullptr),
+      options_(options), opaque_counts_for_depth_(*std::max_element(options.depth_from.begin(),
+                                                                    options.depth_from.end()) <= 1),
+      shader_(frame, camera, classes, outputs, thread_) {}
 
 void BucketRenderer::render(std::size_t bucket, Film& film) {
     sampler_.fill(film.sample_pixels(bucket), block_);
@@ -72,6 +73,9 @@ void BucketRenderer::render(std::size_t bucket, Film& film) {
     }
     if (thread_.trace != nullptr) {
         thread_.trace->end_bucket(samples);
+    }
+    if (outputs_ != nullptr) {
+        fill_sample_channels(samples);
     }
     counters.add(Counter::buckets);
     counters.add(Counter::samples, block_.count);
@@ -139,11 +143,46 @@ bool BucketRenderer::composite(Sample& sample, std::array<float, 3>& transmitted
     return shows_behind;
 }
 
+void BucketRenderer::composite_first_outputs(float* sample, bool is_matte, bool is_front) const {
+    for (const BlendedChannel& b : outputs_->blended()) {
+        if (is_matte || (b.front && !is_front)) {
+            sample[b.channel] = 0;
+        }
+    }
+}
+
+void BucketRenderer::composite_outputs(float* sample, const float* shade,
+                                       const std::array<float, 3>& transmitted,
+                                       bool is_front) const {
+    const float through[4] = {transmitted[0], transmitted[1], transmitted[2],
+                              (transmitted[0] + transmitted[1] + transmitted[2]) / 3};
+    for (const BlendedChannel& b : outputs_->blended()) {
+        if (!b.front) {
+            sample[b.channel] += through[b.transmission] * shade[b.channel];
+        } else if (is_front) {
+            sample[b.channel] = shade[b.channel];
+        }
+    }
+}
+
+void BucketRenderer::fill_sample_channels(SampleBuffer& samples) const {
+    const std::size_t stride = outputs_->num_channels();
+    for (const SampleChannel& c : outputs_->of_samples()) {
+        float* out = samples.extra.data() + c.channel;
+        for (std::size_t i = 0; i < samples.samples.size(); ++i) {
+            const Sample& s = samples.samples[i];
+            out[i * stride] = c.value == SampleValue::Depth ? s.z
+                              : c.component < 3             ? s.color[c.component]
+                                                            : s.opacity[c.component - 3];
+        }
+    }
+}
+
 // Shades go straight into the samples: for nearly all of them that is the result.
 void BucketRenderer::composite_first(SampleBuffer& samples) {
     const PartTimer timer(thread_.counters, Part::work_shade);
     const std::span<const geo::Hit> hits(hits_.data(), block_.count);
-    shader_.shade({camera_packets_, {}, block_.seed, {}, 0}, hits, samples.samples);
+    shader_.shade({camera_packets_, {}, block_.seed, {}, 0}, hits, samples.samples, samples.extra);
     const bool may_be_matte = classes_.has_matte();
     for (std::uint32_t i = 0; i < hits.size(); ++i) {
         if (!hits[i].valid()) {
@@ -161,12 +200,18 @@ void BucketRenderer::composite_first(SampleBuffer& samples) {
         if (composite(sample, transmitted, hits[i], shade, z)) {
             behind_.push_back({i, hits[i].t, hits[i], transmitted});
         }
+        if (outputs_ != nullptr) {
+            composite_first_outputs(samples.extra.data() + i * outputs_->num_channels(),
+                                    is_matte(hits[i]), sample.z < uncovered_z);
+        }
     }
 }
 
 void BucketRenderer::composite_behind(SampleBuffer& samples) {
     const PartTimer timer(thread_.counters, Part::work_shade);
     shades_.resize(std::max(shades_.size(), behind_.size()));
+    const std::size_t num_extra = outputs_ != nullptr ? outputs_->num_channels() : 0;
+    shades_extra_.assign(behind_.size() * num_extra, 0.0f);
     const std::span<const geo::Hit> hits(hits_.data(), behind_.size());
     behind_rays_.clear();
     behind_t_.clear();
@@ -174,7 +219,8 @@ void BucketRenderer::composite_behind(SampleBuffer& samples) {
         behind_rays_.push_back(behind_[i].ray);
         behind_t_.push_back(behind_[i].t + hits[i].t);
     }
-    shader_.shade({camera_packets_, behind_rays_, block_.seed, behind_t_, layer_}, hits, shades_);
+    shader_.shade({camera_packets_, behind_rays_, block_.seed, behind_t_, layer_}, hits, shades_,
+                  shades_extra_);
     next_.clear();
     for (std::size_t i = 0; i < behind_.size(); ++i) {
         Behind b = behind_[i];
@@ -184,8 +230,16 @@ void BucketRenderer::composite_behind(SampleBuffer& samples) {
         b.t += hits[i].t;
         b.hit = hits[i];
         const float z = ray_z(packets_[i / lanes], i % lanes, hits[i].t);
-        if (composite(samples.samples[b.ray], b.transmitted, b.hit, shades_[i], z)) {
+        Sample& sample = samples.samples[b.ray];
+        const std::array<float, 3> transmitted = b.transmitted;
+        const bool had_depth = sample.z < uncovered_z;
+        if (composite(sample, b.transmitted, b.hit, shades_[i], z)) {
             next_.push_back(b);
+        }
+        if (outputs_ != nullptr && !is_matte(b.hit)) {
+            composite_outputs(samples.extra.data() + b.ray * num_extra,
+                              shades_extra_.data() + i * num_extra, transmitted,
+                              !had_depth && sample.z < uncovered_z);
         }
     }
     behind_.swap(next_);

@@ -25,7 +25,8 @@ struct VisibilityOptions {
 class BucketRenderer {
 public:
     BucketRenderer(const FrameContext& frame, const Camera& camera, const Sampler& sampler,
-                   const ShadingClasses& classes, const VisibilityOptions& options);
+                   const ShadingClasses& classes, const OutputBindings* outputs,
+                   const VisibilityOptions& options);
 
     // Renders a bucket and hands its samples to the film.
     void render(std::size_t bucket, Film& film);
@@ -48,6 +49,13 @@ private:
     // Adds a shade to a sample; true if something behind it still shows.
     bool composite(Sample& sample, std::array<float, 3>& transmitted, const geo::Hit& hit,
                    const Sample& shade, float z_hit) const;
+    // The same for outputs. is_front: the surface is the first that counts for depth. The first
+    // surface's values stand in the sample already.
+    void composite_first_outputs(float* sample, bool is_matte, bool is_front) const;
+    void composite_outputs(float* sample, const float* shade,
+                           const std::array<float, 3>& transmitted, bool is_front) const;
+    // Outputs that show the finished sample.
+    void fill_sample_channels(SampleBuffer& samples) const;
     [[nodiscard]] bool is_matte(const geo::Hit& hit) const;
     [[nodiscard]] bool is_opaque(const Sample& shade) const;
 
@@ -55,6 +63,7 @@ private:
     const Camera& camera_;
     const Sampler& sampler_;
     const ShadingClasses& classes_;
+    const OutputBindings* outputs_; // null: none
     VisibilityOptions options_;
     bool opaque_counts_for_depth_; // a zthreshold above 1 is never reached
     ThreadState thread_;
@@ -64,7 +73,8 @@ private:
     std::vector<geo::RayPacket> camera_packets_; // as shaders see the rays
     std::vector<geo::RayPacket> packets_;        // restarted rays of the layer in work
     std::vector<geo::Hit> hits_;
-    std::vector<Sample> shades_; // of restarted rays
+    std::vector<Sample> shades_;      // of restarted rays
+    std::vector<float> shades_extra_; // their outputs
     std::vector<Behind> behind_, next_;
     std::vector<std::uint32_t> behind_rays_;
     std::vector<float> behind_t_;

@@ -45,7 +45,7 @@ public:
         : raster_(trace::make_raster(options(), diag)), sampler_({.nx = 2, .ny = 2, .jitter = 1}),
           weights_(trace::Filter("gaussian", 5, 3, diag), sampler_),
           film(Film::create(raster_, sampler_, weights_,
-                            {.bucket_x = 5, .bucket_y = 7, .num_extra = 1}, diag)) {}
+                            {.bucket_x = 5, .bucket_y = 7, .extra = {{}}}, diag)) {}
 
     // Renders what is needed, in an order of its own; returns how many buckets that were.
     std::size_t render(std::size_t limit = ~std::size_t{0}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writing pictures: one Display request and one Image in, one file out (TIFF, PNG, OpenEXR).
+// Writing pictures: one planned Display and one Image in, one file out (display_formats.def).
 //
 // Files appear under their final name only when complete. Every failure is a message with the place
 // of the Display request and a result; exceptions and longjmp of the libraries stay inside their
@@ -11,6 +11,7 @@
 #include "runtime/base/mat.h"
 #include "tracer/camera.h"
 #include "tracer/film.h"
+#include "tracer/outputs.h"
 #include "tracer/quantize.h"
 
 #include <cstdint>
@@ -37,12 +38,13 @@ struct PictureInfo {
     double window_center[2] = {0, 0}, window_width = 1;
 };
 [[nodiscard]] PictureInfo picture_info(const Camera& camera);
+// To a square from -1 to 1 over the frame, y up: what Pixar's files call worldtoscreen.
+[[nodiscard]] base::Mat4 screen_from_world(const PictureInfo& info);
 
 // Writes the image to the file the request names. The image is exposed and has been through the
-// imager.
-[[nodiscard]] DisplayResult write_display(const rib::Display& display, const rib::Options& options,
-                                          const Image& image, const PictureInfo& info,
-                                          base::Diag& diag);
+// imager; its planes are those the plan's `picture` says.
+[[nodiscard]] DisplayResult write_display(const DisplayPlan& plan, const Image& image,
+                                          const PictureInfo& info, base::Diag& diag);
 
 // The file that write_display() will make; nullopt for drivers that make none.
 [[nodiscard]] std::optional<std::string> display_file(const rib::Display& display);

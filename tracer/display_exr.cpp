@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenEXR: scan lines, R G B A half or float, depth always float; the crop as data window in the
-// frame's display window; worldToCamera, worldToNDC; alpha premultiplied. Values are not quantised.
-// Single-threaded: the bytes repeat.
+// OpenEXR: scan lines, channels half or float as planned, one part or one for each layer; the crop
+// as data window in the frame's display window; worldToCamera, worldToNDC; alpha premultiplied.
+// Values are not quantised. Single-threaded: the bytes repeat.
 #include "tracer/display_format.h"
 
 #include <Imath/half.h>
@@ -9,7 +9,10 @@
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfMultiPartOutputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfOutputPart.h>
+#include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStringAttribute.h>
 
@@ -80,12 +83,13 @@ Imath::M44f matrix(const base::Mat4& m) {
     return out;
 }
 
-Imf::PixelType pixel_type(const FilePicture& p, const FileChannel& c) {
-    const bool precise = c.role == ChannelRole::Depth || p.exr_type == ExrPixelType::Float;
-    return precise ? Imf::FLOAT : Imf::HALF;
+Imf::PixelType pixel_type(const FileChannel& c) {
+    return c.exr_type == ExrPixelType::Float ? Imf::FLOAT : Imf::HALF;
 }
 
-Imf::Header make_header(const FilePicture& p, std::string& note) {
+using ChannelList = std::vector<const FileChannel*>;
+
+Imf::Header make_header(const FilePicture& p, const ChannelList& channels, std::string& note) {
     const Imath::Box2i frame({0, 0}, {p.info.xres - 1, p.info.yres - 1});
     const Imath::Box2i data({p.pixels.x0, p.pixels.y0}, {p.pixels.x1 - 1, p.pixels.y1 - 1});
     const auto number = [](double x) {
@@ -98,8 +102,8 @@ Imf::Header make_header(const FilePicture& p, std::string& note) {
     Imf::addWorldToCamera(header, matrix(p.info.camera_from_world));
     Imf::addWorldToNDC(header, matrix(p.info.ndc_from_world));
     header.insert("software", Imf::StringAttribute("Perigee"));
-    for (const FileChannel& c : p.channels) {
-        header.channels().insert(c.name, Imf::Channel(pixel_type(p, c)));
+    for (const FileChannel* c : channels) {
+        header.channels().insert(c->name, Imf::Channel(pixel_type(*c)));
     }
     return header;
 }
@@ -134,22 +138,57 @@ struct Band {
     }
 };
 
-void write_bands(const FilePicture& p, Imf::OutputFile& out) {
+// Out: an OutputFile, or an OutputPart of one with many.
+template <class Out> void write_bands(const FilePicture& p, const ChannelList& channels, Out& out) {
     std::vector<Band> bands;
-    for (const FileChannel& c : p.channels) {
-        bands.push_back({pixel_type(p, c), {}, {}});
+    for (const FileChannel* c : channels) {
+        bands.push_back({pixel_type(*c), {}, {}});
     }
     const auto width = static_cast<std::size_t>(p.width());
     for (int row = 0; row < p.height(); row += band_rows) {
         const int rows = std::min(band_rows, p.height() - row);
         Imf::FrameBuffer frame;
         for (std::size_t c = 0; c < bands.size(); ++c) {
-            bands[c].fill(p.channels[c].values.subspan(static_cast<std::size_t>(row) * width,
-                                                       static_cast<std::size_t>(rows) * width));
-            frame.insert(p.channels[c].name, bands[c].slice(p.pixels, p.pixels.y0 + row));
+            bands[c].fill(channels[c]->values.subspan(static_cast<std::size_t>(row) * width,
+                                                      static_cast<std::size_t>(rows) * width));
+            frame.insert(channels[c]->name, bands[c].slice(p.pixels, p.pixels.y0 + row));
         }
         out.setFrameBuffer(frame);
         out.writePixels(rows);
+    }
+}
+
+void write_one_part(const FilePicture& p, ExrStream& stream, std::string& note) {
+    ChannelList channels;
+    for (const FileChannel& c : p.channels) {
+        channels.push_back(&c);
+    }
+    Imf::OutputFile out(stream, make_header(p, channels, note), 0);
+    write_bands(p, channels, out);
+}
+
+// A part for the picture itself and one for every layer, in the order of the channels.
+void write_parts(const FilePicture& p, ExrStream& stream, std::string& note) {
+    std::vector<std::pair<std::string, ChannelList>> parts;
+    for (const FileChannel& c : p.channels) {
+        const std::string name = c.layer.empty() ? "rgba" : c.layer;
+        auto part = std::ranges::find(parts, name, &std::pair<std::string, ChannelList>::first);
+        if (part == parts.end()) {
+            part = parts.insert(part, {name, {}});
+        }
+        part->second.push_back(&c);
+    }
+    std::vector<Imf::Header> headers;
+    for (const auto& [name, channels] : parts) {
+        headers.push_back(make_header(p, channels, note));
+        headers.back().setName(name);
+        headers.back().setType(Imf::SCANLINEIMAGE);
+    }
+    Imf::MultiPartOutputFile file(stream, headers.data(), static_cast<int>(headers.size()), false,
+                                  0);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        Imf::OutputPart out(file, static_cast<int>(i));
+        write_bands(p, parts[i].second, out);
     }
 }
 
@@ -159,8 +198,11 @@ WriteOutcome write_exr(const FilePicture& picture, OutputFile& file) {
     WriteOutcome outcome;
     try {
         ExrStream stream(file);
-        Imf::OutputFile out(stream, make_header(picture, outcome.note), 0);
-        write_bands(picture, out);
+        if (picture.multipart) {
+            write_parts(picture, stream, outcome.note);
+        } else {
+            write_one_part(picture, stream, outcome.note);
+        }
     } catch (const std::exception& e) {
         outcome.ok = false;
         outcome.error = e.what();

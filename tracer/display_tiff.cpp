@@ -162,10 +162,8 @@ void set_place(TIFF* t, const FilePicture& p) {
     TIFFSetField(t, TIFFTAG_YPOSITION, static_cast<float>(p.pixels.y0) / p.resolution[1]);
     TIFFSetField(t, TIFFTAG_PIXAR_IMAGEFULLWIDTH, static_cast<std::uint32_t>(info.xres));
     TIFFSetField(t, TIFFTAG_PIXAR_IMAGEFULLLENGTH, static_cast<std::uint32_t>(info.yres));
-    // Pixar's screen matrix ends in a square from -1 to 1, y up.
-    base::Mat4 square_from_ndc = base::Mat4::translate({-1, 1, 0}) * base::Mat4::scale({2, -2, 1});
     set_matrix(t, TIFFTAG_PIXAR_MATRIX_WORLDTOCAMERA, info.camera_from_world);
-    set_matrix(t, TIFFTAG_PIXAR_MATRIX_WORLDTOSCREEN, square_from_ndc * info.ndc_from_world);
+    set_matrix(t, TIFFTAG_PIXAR_MATRIX_WORLDTOSCREEN, screen_from_world(info));
 }
 
 } // namespace

@@ -85,8 +85,7 @@ struct Film::Bucket {
 std::unique_ptr<Film> Film::create(const Raster& raster, const Sampler& sampler,
                                    const FilterWeights& weights, const FilmSettings& settings,
                                    base::Diag& diag) {
-    const std::size_t planes =
-        static_cast<std::size_t>(Plane::Count) + static_cast<std::size_t>(settings.num_extra);
+    const std::size_t planes = static_cast<std::size_t>(Plane::Count) + settings.extra.size();
     const std::size_t bytes = raster.crop.area() * planes * sizeof(float);
     if (raster.crop.area() <= max_pixels && bytes < physical_bytes()) {
         try {
@@ -104,13 +103,15 @@ std::unique_ptr<Film> Film::create(const Raster& raster, const Sampler& sampler,
 Film::Film(const Raster& raster, const Sampler& sampler, const FilterWeights& weights,
            const FilmSettings& settings)
     : sampler_(sampler), weights_(weights), settings_(settings) {
-    // Many samples per pixel make buckets smaller, so that their memory stays bounded.
+    // Many samples per pixel, or many channels, make buckets smaller, so that their memory stays
+    // bounded.
+    const std::size_t per_pixel = static_cast<std::size_t>(sampler.per_pixel()) *
+                                  (1 + settings_.extra.size() * sizeof(float) / sizeof(Sample));
     const auto samples = [&] {
         return static_cast<std::size_t>(settings_.bucket_x) *
-               static_cast<std::size_t>(settings_.bucket_y) *
-               static_cast<std::size_t>(sampler.per_pixel());
+               static_cast<std::size_t>(settings_.bucket_y) * per_pixel;
     };
-    while (samples() > max_bucket_samples) {
+    while (samples() > max_bucket_samples && settings_.bucket_x * settings_.bucket_y > 1) {
         int& larger =
             settings_.bucket_x > settings_.bucket_y ? settings_.bucket_x : settings_.bucket_y;
         larger = (larger + 1) / 2;
@@ -120,10 +121,17 @@ Film::Film(const Raster& raster, const Sampler& sampler, const FilterWeights& we
         plane.assign(raster.crop.area(), 0.0f);
     }
     std::ranges::fill(image_.plane(Plane::Z), uncovered_z);
-    image_.extra.assign(static_cast<std::size_t>(settings.num_extra),
-                        std::vector<float>(raster.crop.area(), 0.0f));
-    near_x_ = (weights.reach_x() + settings_.bucket_x - 1) / settings_.bucket_x;
-    near_y_ = (weights.reach_y() + settings_.bucket_y - 1) / settings_.bucket_y;
+    reach_x_ = weights.reach_x();
+    reach_y_ = weights.reach_y();
+    for (const ExtraChannel& c : settings_.extra) {
+        image_.extra.emplace_back(raster.crop.area(), c.empty);
+        if (c.weights != nullptr) {
+            reach_x_ = std::max(reach_x_, c.weights->reach_x());
+            reach_y_ = std::max(reach_y_, c.weights->reach_y());
+        }
+    }
+    near_x_ = (reach_x_ + settings_.bucket_x - 1) / settings_.bucket_x;
+    near_y_ = (reach_y_ + settings_.bucket_y - 1) / settings_.bucket_y;
     make_buckets(raster.rendered());
 }
 
@@ -156,10 +164,10 @@ void Film::make_buckets(const PixelRange& rendered) {
             Bucket b;
             b.output = {xs[i], ys[j], xs[i + 1], ys[j + 1]};
             b.owned = b.output;
-            b.owned.x0 -= i == 0 ? weights_.reach_x() : 0;
-            b.owned.y0 -= j == 0 ? weights_.reach_y() : 0;
-            b.owned.x1 += i + 2 == xs.size() ? weights_.reach_x() : 0;
-            b.owned.y1 += j + 2 == ys.size() ? weights_.reach_y() : 0;
+            b.owned.x0 -= i == 0 ? reach_x_ : 0;
+            b.owned.y0 -= j == 0 ? reach_y_ : 0;
+            b.owned.x1 += i + 2 == xs.size() ? reach_x_ : 0;
+            b.owned.y1 += j + 2 == ys.size() ? reach_y_ : 0;
             buckets_.push_back(std::move(b));
         }
     }
@@ -216,10 +224,10 @@ SampleBuffer Film::buffer(std::size_t bucket) {
         }
     }
     out.pixels = buckets_[bucket].owned;
-    out.num_extra = settings_.num_extra;
+    out.num_extra = static_cast<int>(settings_.extra.size());
     const std::size_t n = out.pixels.area() * static_cast<std::size_t>(sampler_.per_pixel());
     out.samples.assign(n, Sample{});
-    out.extra.assign(n * static_cast<std::size_t>(settings_.num_extra), 0.0f);
+    out.extra.assign(n * settings_.extra.size(), 0.0f);
     return out;
 }
 
@@ -298,7 +306,7 @@ void Film::release(std::size_t bucket) {
 }
 
 void Film::filter_bucket(std::size_t bucket) {
-    Gather gather(sampler_, weights_, settings_, buckets_[bucket].output);
+    Gather gather(sampler_, weights_, settings_.extra, settings_.depth, buckets_[bucket].output);
     for (const std::size_t n : neighbours(bucket)) {
         gather.add(buckets_[n].samples);
     }

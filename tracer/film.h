@@ -74,10 +74,27 @@ constexpr float uncovered_z = std::numeric_limits<float>::infinity();
 
 constexpr int max_bucket_px = 256; // on a side
 
+// How the samples of a pixel become its value in an extra channel.
+enum class Combine : std::uint8_t {
+    Mean, // weighted by the filter; what covers nothing counts as 0
+    // Of the covered samples whose weight is not zero:
+    CoveredMean, // weighted
+    Min,
+    Max,
+    Nearest, // the value of the sample nearest to the eye
+    Farthest
+};
+struct ExtraChannel {
+    Combine combine = Combine::Mean;
+    const FilterWeights* weights = nullptr; // null: the film's own. They outlive the film
+    float empty = 0;                        // of a pixel nothing covers; Mean does not use it
+    friend bool operator==(const ExtraChannel&, const ExtraChannel&) = default;
+};
+
 struct FilmSettings {
     int bucket_x = 16, bucket_y = 16; // pixels
     DepthFilter depth = DepthFilter::Min;
-    int num_extra = 0;
+    std::vector<ExtraChannel> extra{}; // equal ones beside each other are computed together
 };
 // Option "limits" "bucketsize", Hider "depthfilter".
 [[nodiscard]] FilmSettings film_settings(const rib::Options& options, base::Diag& diag);
@@ -158,7 +175,8 @@ private:
     const FilterWeights& weights_;
     FilmSettings settings_;
     int columns_ = 0, rows_ = 0;
-    int near_x_ = 1, near_y_ = 1; // buckets that filters reach
+    int reach_x_ = 0, reach_y_ = 0; // pixels, of the widest filter
+    int near_x_ = 1, near_y_ = 1;   // buckets that filters reach
     std::vector<Bucket> buckets_;
     Image image_;
     std::vector<FilmObserver*> observers_;

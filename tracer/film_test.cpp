@@ -212,7 +212,7 @@ TEST(Film, OrderAndThreadsChangeNothing) {
         Job job{.filter = name,
                 .wx = width,
                 .wy = width,
-                .settings = {.bucket_x = 8, .bucket_y = 4, .num_extra = 1}};
+                .settings = {.bucket_x = 8, .bucket_y = 4, .extra = {{}}}};
         const Outcome plain = render(job, noise_scene);
         job.order_seed = 5;
         EXPECT_TRUE(same_bytes(plain.image, render(job, noise_scene).image)) << name;
@@ -229,7 +229,7 @@ TEST(Film, CropTilesAreTheWholePicture) {
         Job job{.filter = name,
                 .wx = width,
                 .wy = width,
-                .settings = {.bucket_x = 8, .bucket_y = 8, .num_extra = 1}};
+                .settings = {.bucket_x = 8, .bucket_y = 8, .extra = {{}}}};
         const Outcome whole = render(job, noise_scene);
         const float cut_x = 0.37f, cut_y = 0.61f;
         std::size_t pixels = 0;

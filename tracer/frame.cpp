@@ -7,6 +7,7 @@
 #include "tracer/bucket.h"
 #include "tracer/bucket_order.h"
 #include "tracer/camera.h"
+#include "tracer/develop.h"
 #include "tracer/display.h"
 #include "tracer/filter.h"
 #include "tracer/frame_hash.h"
@@ -14,6 +15,7 @@
 #include "tracer/lights.h"
 #include "tracer/live_display.h"
 #include "tracer/not_done.h"
+#include "tracer/output_bindings.h"
 #include "tracer/pixel_trace.h"
 #include "tracer/quantize.h"
 #include "tracer/sampler.h"
@@ -61,7 +63,8 @@ private:
 // All that is made from a scene before the first ray, in the order it is made.
 class Frame {
 public:
-    Frame(const rib::Scene& scene, const RenderSettings& settings, const FrameTools& tools)
+    Frame(const rib::Scene& scene, const RenderSettings& settings, const FrameTools& tools,
+          const std::vector<rib::Display>& displays)
         : scene_(scene), settings_(settings), tools_(tools), camera_(scene, tools.diag),
           spaces_(scene, {camera_.screen_from_camera(), camera_.ndc_from_screen(),
                           camera_.raster_from_screen()}) {
@@ -72,6 +75,8 @@ public:
                 ShaderSources{scene, spaces_, tools.library, tools.strings, tools.diag});
             lights_ = std::make_unique<LightSet>(scene, *shaders_, tools.diag);
             classes_ = std::make_unique<ShadingClasses>(scene, *shaders_, *lights_);
+            outputs_ = OutputSet(displays, scene.options, shader_outputs(*classes_), tools.diag);
+            bindings_ = OutputBindings(outputs_, *classes_, tools.diag);
         }
         const PhaseTimer timer(tools.stats, Phase::geometry);
         world_ = geo::World::build(
@@ -87,6 +92,7 @@ public:
     void add_stats(const Counters& counted) const {
         tools_.stats.add(counted, shaders_->names(), tick_rate_.seconds_per_tick());
     }
+    [[nodiscard]] const OutputSet& outputs() const { return outputs_; }
     [[nodiscard]] const ShaderEntry* imager() const { return shaders_->get(scene_.options.imager); }
 
     [[nodiscard]] Checkpoint::Hash hash() const { return frame_hash(scene_, *shaders_); }
@@ -116,6 +122,8 @@ private:
     std::unique_ptr<ShaderSet> shaders_;
     std::unique_ptr<LightSet> lights_;
     std::unique_ptr<ShadingClasses> classes_;
+    OutputSet outputs_;
+    OutputBindings bindings_;
     std::unique_ptr<geo::World> world_;
 };
 
@@ -127,8 +135,9 @@ int rows_at_once(const Film& film, const Sampler& sampler) {
     if (film.num_buckets() == 0) {
         return 1;
     }
+    const std::size_t sample_bytes = sizeof(Sample) + film.image().extra.size() * sizeof(float);
     const std::size_t bytes = film.sample_pixels(0).area() *
-                              static_cast<std::size_t>(sampler.per_pixel()) * sizeof(Sample) *
+                              static_cast<std::size_t>(sampler.per_pixel()) * sample_bytes *
                               static_cast<std::size_t>(film.columns());
     return static_cast<int>(std::clamp<std::size_t>(max_waiting_bytes / bytes, 1, 1 << 20));
 }
@@ -157,8 +166,11 @@ FrameResult Frame::render(Image& image, const Company& company) const {
     if (trace != nullptr) { // crop windows do not change a pixel (film-003)
         raster.crop = trace->pixel();
     }
+    const auto output_weights = outputs_.weights(sampler, tools_.diag);
+    FilmSettings settings = film_settings(options, tools_.diag);
+    settings.extra = outputs_.film_channels(output_weights);
     const std::unique_ptr<Film> film =
-        Film::create(raster, sampler, weights, film_settings(options, tools_.diag), tools_.diag);
+        Film::create(raster, sampler, weights, settings, tools_.diag);
     if (!film) {
         return FrameResult::Failed;
     }
@@ -202,8 +214,8 @@ FrameResult Frame::render_buckets(Film& film, const Sampler& sampler,
         }
         std::unique_ptr<BucketRenderer>& renderer = renderers[static_cast<std::size_t>(slot)];
         if (!renderer) {
-            renderer =
-                std::make_unique<BucketRenderer>(frame, camera_, sampler, *classes_, visibility);
+            renderer = std::make_unique<BucketRenderer>(frame, camera_, sampler, *classes_,
+                                                        &bindings_, visibility);
             renderer->thread().trace = trace;
         }
         renderer->render(bucket, film);
@@ -318,61 +330,33 @@ std::string checkpoint_of(const std::vector<rib::Display>& displays,
     return "";
 }
 
-// Displays that ask for the same exposure share one exposed picture. The last one may take the
-// film's.
-class Developer {
-public:
-    Developer(const Frame& frame, const RenderSettings& settings, const FrameTools& tools,
-              Image&& filtered)
-        : frame_(frame), settings_(settings), tools_(tools), filtered_(std::move(filtered)) {}
-
-    const Image& developed(const Exposure& exposure, bool last) {
-        if (!is_developed_ || !(exposure == exposure_)) {
-            picture_ = last ? std::move(filtered_) : filtered_;
-            apply_exposure(picture_, exposure);
-            if (const ShaderEntry* imager = frame_.imager()) {
-                Counters counters;
-                run_imager(frame_.context(), *imager, picture_, settings_.num_threads, counters);
-                frame_.add_stats(counters);
-            }
-            exposure_ = exposure;
-            is_developed_ = true;
-        }
-        return picture_;
-    }
-
-private:
-    const Frame& frame_;
-    const RenderSettings& settings_;
-    const FrameTools& tools_;
-    Image filtered_, picture_;
-    Exposure exposure_;
-    bool is_developed_ = false;
-};
-
-FrameResult write_displays(const rib::Scene& scene, const Frame& frame,
-                           const RenderSettings& settings, const FrameTools& tools,
-                           const std::vector<rib::Display>& displays, Image&& image) {
+FrameResult write_displays(const Frame& frame, const RenderSettings& settings,
+                           const FrameTools& tools, const std::vector<rib::Display>& displays,
+                           Image&& image) {
     const PhaseTimer timer(tools.stats, Phase::write);
     const rib::Display* shown = shown_display(displays, settings);
-    Developer developer(frame, settings, tools, std::move(image));
+    const std::vector<DisplayPlan>& plans = frame.outputs().displays();
+    Counters counters;
+    Developer developer(frame.context(), frame.imager(), settings.num_threads, counters, plans,
+                        std::move(image));
     FrameResult result = FrameResult::Done;
-    for (const rib::Display& display : displays) {
+    for (std::size_t i = 0; i < plans.size(); ++i) {
+        const bool is_shown = &displays[i] == shown;
         if (wants_stop(settings, tools.diag)) {
             return FrameResult::Interrupted;
         }
-        if (&display != shown && !leaves_file(display)) {
+        if (!is_shown && !leaves_file(displays[i])) {
             continue;
         }
-        const Exposure exposure = exposure_of(scene.options, display);
-        const Image& picture = developer.developed(exposure, &display == &displays.back());
-        if (&display == shown) {
+        const Image& picture = developer.developed(plans[i]);
+        if (is_shown) {
             settings.live->show_final(picture);
         }
-        const DisplayResult written = write_display(display, scene.options, picture,
-                                                    picture_info(frame.camera()), tools.diag);
+        const DisplayResult written =
+            write_display(plans[i], picture, picture_info(frame.camera()), tools.diag);
         result = written == DisplayResult::Failed ? FrameResult::Failed : result;
     }
+    frame.add_stats(counters);
     return result;
 }
 
@@ -415,7 +399,7 @@ FrameResult trace_pixels(const rib::Scene& scene, const Frame& frame,
 
 FrameResult render_image(const rib::Scene& scene, const RenderSettings& settings,
                          const FrameTools& tools, Image& image) {
-    const Frame frame(scene, settings, tools);
+    const Frame frame(scene, settings, tools, scene.options.displays);
     return frame.render(image, {});
 }
 
@@ -432,7 +416,7 @@ FrameResult render_frame(const rib::Scene& scene, const RenderSettings& settings
     if (!tracing && !can_write(displays, tools.diag)) {
         return FrameResult::Failed;
     }
-    const Frame frame(scene, settings, tools);
+    const Frame frame(scene, settings, tools, displays);
     if (wants_stop(settings, tools.diag)) {
         return FrameResult::Interrupted;
     }
@@ -447,7 +431,7 @@ FrameResult render_frame(const rib::Scene& scene, const RenderSettings& settings
         image,
         {.checkpoint = &checkpoint, .trace = nullptr, .shown = shown_display(displays, settings)});
     if (result == FrameResult::Done) {
-        result = write_displays(scene, frame, settings, tools, displays, std::move(image));
+        result = write_displays(frame, settings, tools, displays, std::move(image));
     }
     if (result == FrameResult::Done) {
         checkpoint.remove();

@@ -37,17 +37,39 @@ struct Gather::Sum {
     }
 };
 
-Gather::Gather(const Sampler& sampler, const FilterWeights& weights, const FilmSettings& settings,
-               const PixelRange& output)
-    : sampler_(sampler), weights_(weights), settings_(settings), output_(output),
-      pixels_(output.grown(weights.reach_x(), weights.reach_y())),
-      width_(static_cast<std::size_t>(pixels_.width())),
-      per_pixel_(static_cast<std::size_t>(sampler.per_pixel())), sources_(pixels_.area()) {
-    for (int dy = -weights.reach_y(); dy <= weights.reach_y(); ++dy) {
-        for (int dx = -weights.reach_x(); dx <= weights.reach_x(); ++dx) {
-            near_.push_back(static_cast<std::ptrdiff_t>(dy) * pixels_.width() + dx);
+namespace {
+
+PixelRange in_reach(const PixelRange& output, const FilterWeights& weights,
+                    std::span<const ExtraChannel> extra) {
+    int x = weights.reach_x(), y = weights.reach_y();
+    for (const ExtraChannel& c : extra) {
+        if (c.weights != nullptr) {
+            x = std::max(x, c.weights->reach_x());
+            y = std::max(y, c.weights->reach_y());
         }
     }
+    return output.grown(x, y);
+}
+
+} // namespace
+
+Gather::Gather(const Sampler& sampler, const FilterWeights& weights,
+               std::span<const ExtraChannel> extra, DepthFilter depth, const PixelRange& output)
+    : sampler_(sampler), extra_(extra), depth_(depth), output_(output),
+      pixels_(in_reach(output, weights, extra)), width_(static_cast<std::size_t>(pixels_.width())),
+      per_pixel_(static_cast<std::size_t>(sampler.per_pixel())), sources_(pixels_.area()),
+      reach_(reach_of(weights)) {
+    make_runs();
+}
+
+Gather::Reach Gather::reach_of(const FilterWeights& weights) const {
+    Reach reach{&weights, {}};
+    for (int dy = -weights.reach_y(); dy <= weights.reach_y(); ++dy) {
+        for (int dx = -weights.reach_x(); dx <= weights.reach_x(); ++dx) {
+            reach.near.push_back(static_cast<std::ptrdiff_t>(dy) * pixels_.width() + dx);
+        }
+    }
+    return reach;
 }
 
 void Gather::add(const SampleBuffer& buffer) {
@@ -68,7 +90,7 @@ void Gather::add_row(const SampleBuffer& buffer, int y, int x0, int x1) {
     const PixelHash hash(y);
     for (int x = x0; x < x1; ++x, ++to, first += per_pixel_) {
         *to = {buffer.samples.data() + first, buffer.extra.data() + first * channels,
-               sampler_.pattern(hash(x)) * weights_.neighbours()};
+               sampler_.pattern(hash(x))};
     }
 }
 
@@ -86,6 +108,7 @@ std::uint64_t Gather::run(Image& image) const {
     std::uint64_t bad = 0;
     const auto count = static_cast<std::size_t>(output_.width());
     Row row;
+    std::vector<float> values(extra_.size());
     for (int y = output_.y0; y < output_.y1; ++y) {
         const std::size_t at = static_cast<std::size_t>(y - image.pixels.y0) *
                                    static_cast<std::size_t>(image.pixels.width()) +
@@ -93,7 +116,15 @@ std::uint64_t Gather::run(Image& image) const {
         const Source* own = &sources_[static_cast<std::size_t>(y - pixels_.y0) * width_ +
                                       static_cast<std::size_t>(output_.x0 - pixels_.x0)];
         for (std::size_t x = 0; x < count; ++x) {
-            bad += pixel(own + x, row, x, image, at + x);
+            bad += pixel(own + x, row, x);
+        }
+        for (std::size_t x = 0; x < count && !runs_.empty(); ++x) {
+            for (const Run& channels : runs_) {
+                extra_values(own + x, channels, values.data() + channels.first);
+            }
+            for (std::size_t c = 0; c < values.size(); ++c) {
+                image.extra[c][at + x] = values[c];
+            }
         }
         for (std::size_t p = 0; p < row.planes.size(); ++p) {
             std::copy_n(row.planes[p].begin(), count, image.planes[p].data() + at);
@@ -102,21 +133,9 @@ std::uint64_t Gather::run(Image& image) const {
     return bad;
 }
 
-// Calls body(source, sample, weight) for all samples in reach, in the one order there is.
-template <class Body> void Gather::for_samples(const Source* own, const Body& body) const {
-    for (std::size_t k = 0; k < near_.size(); ++k) {
-        const Source& source = own[near_[k]];
-        const FilterWeights::Span span = weights_.span(source.slot + k);
-        const float* w = weights_.weights(source.slot + k);
-        for (std::size_t s = span.first; s < span.last; ++s) {
-            body(source, s, w[s]);
-        }
-    }
-}
-
 Gather::Sum Gather::filtered(const Source* own) const {
     Sum sum;
-    for_samples(own, [&](const Source& source, std::size_t s, float weight) {
+    for_samples(own, reach_, [&](const Source& source, std::size_t s, float weight) {
         sum.add(source.samples[s], weight);
     });
     return sum;
@@ -135,18 +154,17 @@ Gather::Sum Gather::careful(const Source* own, bool plain) const {
             add(*own, s, 1);
         }
     } else {
-        for_samples(own, add);
+        for_samples(own, reach_, add);
     }
     return sum;
 }
 
-std::uint64_t Gather::pixel(const Source* own, Row& row, std::size_t x, Image& image,
-                            std::size_t at) const {
+std::uint64_t Gather::pixel(const Source* own, Row& row, std::size_t x) const {
     Sum sum = filtered(own);
     std::uint64_t bad = 0;
     // A filter narrower than the spacing of samples, or one with negative lobes and few samples,
     // may leave nothing to divide by: the pixel is then the plain mean of its own samples.
-    const bool plain = !(sum.weight() >= weights_.least_sum());
+    const bool plain = !(sum.weight() >= reach_.weights->least_sum());
     if (plain || !sum.finite()) {
         sum = careful(own, plain);
         for (std::size_t s = 0; s < per_pixel_; ++s) {
@@ -165,16 +183,13 @@ std::uint64_t Gather::pixel(const Source* own, Row& row, std::size_t x, Image& i
     row.set(Plane::OB, x, high[1]);
     row.set(Plane::A, x, (low[3] + high[0] + high[1]) / 3);
     row.set(Plane::Z, x, depth(*own));
-    for (std::size_t c = 0; c < image.extra.size(); ++c) {
-        image.extra[c][at] = extra_channel(own, c, plain);
-    }
     return bad;
 }
 
 // Of the pixel's own covered samples; ri.md 9: depth bypasses the filter. NaN counts as uncovered.
 float Gather::depth(const Source& own) const {
     float nearest = uncovered_z, farthest = -uncovered_z;
-    if (settings_.depth == DepthFilter::Min) {
+    if (depth_ == DepthFilter::Min) {
         for (std::size_t s = 0; s < per_pixel_; ++s) {
             nearest = own.samples[s].z < nearest ? own.samples[s].z : nearest;
         }
@@ -193,25 +208,7 @@ float Gather::depth(const Source& own) const {
     if (covered == 0) {
         return uncovered_z;
     }
-    return settings_.depth == DepthFilter::Max ? farthest : static_cast<float>(sum / covered);
-}
-
-float Gather::extra_channel(const Source* own, std::size_t channel, bool plain) const {
-    const auto stride = static_cast<std::size_t>(settings_.num_extra);
-    float sum = 0, total = 0;
-    const auto add = [&](const Source& source, std::size_t s, float weight) {
-        const float value = source.extra[s * stride + channel];
-        sum += std::isfinite(value) ? weight * value : 0;
-        total += weight;
-    };
-    if (plain) {
-        for (std::size_t s = 0; s < per_pixel_; ++s) {
-            add(*own, s, 1);
-        }
-    } else {
-        for_samples(own, add);
-    }
-    return sum / total;
+    return depth_ == DepthFilter::Max ? farthest : static_cast<float>(sum / covered);
 }
 
 } // namespace trace

@@ -7,15 +7,17 @@
 
 #include "tracer/film.h"
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace trace {
 
 class Gather {
 public:
-    Gather(const Sampler& sampler, const FilterWeights& weights, const FilmSettings& settings,
-           const PixelRange& output);
+    Gather(const Sampler& sampler, const FilterWeights& weights,
+           std::span<const ExtraChannel> extra, DepthFilter depth, const PixelRange& output);
 
     // Samples of pixels in reach of the output; the buffer must live until run() is done.
     void add(const SampleBuffer& buffer);
@@ -27,28 +29,62 @@ private:
     struct Source {
         const Sample* samples = nullptr;
         const float* extra = nullptr;
-        std::size_t slot = 0; // of the pattern's first neighbour in the tables of weights
+        std::size_t pattern = 0; // of the sampler
+    };
+    // A filter and where the pixels in its reach lie: offsets in sources_, row by row.
+    struct Reach {
+        const FilterWeights* weights;
+        std::vector<std::ptrdiff_t> near;
+    };
+    // Neighbouring extra channels that are computed alike.
+    struct Run {
+        std::size_t first, count;
+        ExtraChannel how;
+        Reach reach;
     };
     struct Sum;
     struct Row;
 
+    [[nodiscard]] Reach reach_of(const FilterWeights& weights) const;
+    void make_runs();
     void add_row(const SampleBuffer& buffer, int y, int x0, int x1);
-    template <class Body> void for_samples(const Source* own, const Body& body) const;
+    template <class Body>
+    void for_samples(const Source* own, const Reach& reach, const Body& body) const;
     [[nodiscard]] Sum filtered(const Source* own) const;
     [[nodiscard]] Sum careful(const Source* own, bool plain) const;
-    // Pixel x of the row; `at` is its place in the image, for the extra channels.
-    [[nodiscard]] std::uint64_t pixel(const Source* own, Row& row, std::size_t x, Image& image,
-                                      std::size_t at) const;
+    [[nodiscard]] std::uint64_t pixel(const Source* own, Row& row, std::size_t x) const;
     [[nodiscard]] float depth(const Source& own) const;
-    [[nodiscard]] float extra_channel(const Source* own, std::size_t channel, bool plain) const;
+    // Extra channels: gather_extra.cpp. out: a value per channel of the run.
+    void extra_values(const Source* own, const Run& run, float* out) const;
+    void means(const Source* own, const Run& run, bool plain, float* out) const;
+    void covered_means(const Source* own, const Run& run, float* out) const;
+    void extremes(const Source* own, const Run& run, float* out) const;
+    void outermost(const Source* own, const Run& run, float* out) const;
 
     const Sampler& sampler_;
-    const FilterWeights& weights_;
-    const FilmSettings& settings_;
-    PixelRange output_, pixels_;       // computed; looked at
-    std::size_t width_, per_pixel_;    // of pixels_; samples
-    std::vector<Source> sources_;      // of pixels_, row by row
-    std::vector<std::ptrdiff_t> near_; // offsets of the neighbourhood in sources_, row by row
+    std::span<const ExtraChannel> extra_;
+    DepthFilter depth_;
+    PixelRange output_, pixels_;    // computed; looked at
+    std::size_t width_, per_pixel_; // of pixels_; samples
+    std::vector<Source> sources_;   // of pixels_, row by row
+    Reach reach_;
+    std::vector<Run> runs_;
 };
+
+// Calls body(source, sample, weight) for all samples in reach, in the one order there is.
+template <class Body>
+void Gather::for_samples(const Source* own, const Reach& reach, const Body& body) const {
+    const FilterWeights& weights = *reach.weights;
+    const std::size_t num_near = reach.near.size();
+    for (std::size_t k = 0; k < num_near; ++k) {
+        const Source& source = own[reach.near[k]];
+        const std::size_t slot = source.pattern * num_near + k;
+        const FilterWeights::Span span = weights.span(slot);
+        const float* w = weights.weights(slot);
+        for (std::size_t s = span.first; s < span.last; ++s) {
+            body(source, s, w[s]);
+        }
+    }
+}
 
 } // namespace trace

@@ -7,6 +7,7 @@
 #include "tracer/services.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 
@@ -44,9 +45,13 @@ std::size_t HitShader::KeyHash::operator()(const Key& key) const {
 }
 
 HitShader::HitShader(const FrameContext& frame, const Camera& camera, const ShadingClasses& classes,
-                     ThreadState& thread)
-    : frame_(frame), camera_(camera), classes_(classes), thread_(thread),
-      group_of_class_(classes.size(), geo::no_id) {}
+                     const OutputBindings* outputs, ThreadState& thread)
+    : frame_(frame), camera_(camera), classes_(classes),
+      outputs_(outputs != nullptr && outputs->num_channels() > 0 ? outputs : nullptr),
+      thread_(thread), group_of_class_(classes.size(), geo::no_id),
+      shown_planes_(outputs_ != nullptr
+                        ? static_cast<std::size_t>(std::popcount(outputs_->all_variables()))
+                        : 0) {}
 
 // --- grouping
 
@@ -124,10 +129,11 @@ void HitShader::group_hits(std::span<const geo::Hit> hits) {
 }
 
 void HitShader::shade(const ShadingRays& rays, std::span<const geo::Hit> hits,
-                      std::span<Sample> out) {
+                      std::span<Sample> out, std::span<float> out_extra) {
     rays_ = rays;
     hits_ = hits;
     out_ = out;
+    out_extra_ = out_extra;
     group_hits(hits);
     thread_.counters.add(Counter::hits, members_.size());
     for (const Group& group : groups_) {
@@ -152,7 +158,8 @@ void HitShader::shade_group(const Group& group) {
 
 void HitShader::shade_batch(const Group& group, std::span<const std::uint32_t> members) {
     const ShadingClass& c = classes_[group.shading_class];
-    gather(c, members);
+    const std::uint64_t shown = shown_variables(group.shading_class);
+    gather(c, shown, members);
     ++thread_.batch_serial;
     const BatchSubject subject{subject_hits_, &c.lights, group.attributes};
     Execution surface(frame_, *c.surface);
@@ -162,20 +169,27 @@ void HitShader::shade_batch(const Group& group, std::span<const std::uint32_t> m
     if (thread_.trace != nullptr) {
         thread_.trace->begin_batch(rays_.ray, members);
     }
-    run_surface(c, surface, members);
+    const sl_points planes = run_surface(c, shown, surface, members);
     if (c.atmosphere != nullptr) {
         run_atmosphere(*c.atmosphere, surface, members);
     }
-    scatter(members, *c.surface);
+    const bool all_good = scatter(members);
+    if (outputs_ != nullptr) {
+        scatter_outputs(group.shading_class, planes, members, *c.surface);
+    }
+    if (!all_good) {
+        blacken_bad(members, *c.surface);
+    }
     if (thread_.trace != nullptr) {
         thread_.trace->shaded(members, out_);
     }
 }
 
-void HitShader::gather(const ShadingClass& c, std::span<const std::uint32_t> members) {
+void HitShader::gather(const ShadingClass& c, std::uint64_t shown,
+                       std::span<const std::uint32_t> members) {
     gather_hits(c, members);
-    const std::uint64_t needed =
-        c.surface->object().needed | (c.atmosphere != nullptr ? c.atmosphere->object().needed : 0);
+    const std::uint64_t needed = shown | c.surface->object().needed |
+                                 (c.atmosphere != nullptr ? c.atmosphere->object().needed : 0);
     const bool needs_footprint = (needed & (bit(SL_VAR_du) | bit(SL_VAR_dv))) != 0 ||
                                  (c.surface->object().facts & SL_FACT_area_operators) != 0;
     if (!needs_footprint && (needed & bit(SL_VAR_I)) == 0) {
@@ -215,13 +229,14 @@ void HitShader::gather_hits(const ShadingClass& c, std::span<const std::uint32_t
 
 // Ci and Oi start as Cs and Os ([R] of sl.md 5.2), so the geometry is asked for those whatever the
 // shader needs; where it has no planes for them they go straight to the results.
-void HitShader::run_surface(const ShadingClass& c, Execution& execution,
-                            std::span<const std::uint32_t> members) {
+sl_points HitShader::run_surface(const ShadingClass& c, std::uint64_t shown, Execution& execution,
+                                 std::span<const std::uint32_t> members) {
     const auto count = static_cast<std::uint32_t>(members.size());
     rt::ShadeBatch& batch = thread_.surface;
     batch.begin(*c.surface->instance, count);
     const std::uint32_t stride = batch.stride();
     sl_points planes = batch.points();
+    add_shown_planes(shown, planes);
     const auto or_scratch = [](float*& plane, std::array<float, 3 * Batch::size>& scratch) {
         plane = plane != nullptr ? plane : scratch.data();
     };
@@ -232,7 +247,8 @@ void HitShader::run_surface(const ShadingClass& c, Execution& execution,
     const bool own_Cs = planes.var[SL_VAR_Cs] != nullptr, own_Os = planes.var[SL_VAR_Os] != nullptr;
     planes.var[SL_VAR_Cs] = own_Cs ? planes.var[SL_VAR_Cs] : Ci;
     planes.var[SL_VAR_Os] = own_Os ? planes.var[SL_VAR_Os] : Oi;
-    const std::uint64_t needed = c.surface->object().needed | bit(SL_VAR_Cs) | bit(SL_VAR_Os);
+    const std::uint64_t needed =
+        c.surface->object().needed | shown | bit(SL_VAR_Cs) | bit(SL_VAR_Os);
     frame_.world->fill(subject_hits_, incident(count), needed & geometry_variables, stride, planes,
                        batch.aux_points_u(), batch.aux_points_v());
     if (own_Cs) {
@@ -251,6 +267,7 @@ void HitShader::run_surface(const ShadingClass& c, Execution& execution,
     stride_ = stride;
     Ci_ = Ci;
     Oi_ = Oi;
+    return planes;
 }
 
 // The volume between the eye and the surface; it takes Ci and Oi of the surface and gives those at
@@ -365,7 +382,7 @@ bool finish_planes(const float* Ci, float* Oi, std::size_t num_floats) {
 
 } // namespace
 
-void HitShader::scatter(std::span<const std::uint32_t> members, const ShaderEntry& shader) {
+bool HitShader::scatter(std::span<const std::uint32_t> members) {
     const bool all_good = finish_planes(Ci_, Oi_, 3 * std::size_t{stride_});
     const std::size_t stride = stride_;
     for (std::size_t i = 0; i < members.size(); ++i) {
@@ -375,9 +392,7 @@ void HitShader::scatter(std::span<const std::uint32_t> members, const ShaderEntr
             out.opacity[k] = Oi_[k * stride + i];
         }
     }
-    if (!all_good) {
-        blacken_bad(members, shader);
-    }
+    return all_good;
 }
 
 // What is no number becomes a transparent black point.
@@ -390,6 +405,10 @@ void HitShader::blacken_bad(std::span<const std::uint32_t> members, const Shader
         };
         if (!is_good(out.color) || !is_good(out.opacity)) {
             out = {};
+            if (outputs_ != nullptr) {
+                const std::size_t n = outputs_->num_channels();
+                std::ranges::fill(out_extra_.subspan(member * n, n), 0.0f);
+            }
             ++num_bad;
         }
     }

@@ -9,6 +9,7 @@
 #include "tracer/camera.h"
 #include "tracer/execution.h"
 #include "tracer/film.h"
+#include "tracer/output_bindings.h"
 #include "tracer/shading_classes.h"
 
 #include <array>
@@ -34,11 +35,14 @@ struct ShadingRays {
 
 class HitShader {
 public:
+    // outputs: what displays show besides colour and opacity; nullptr: nothing.
     HitShader(const FrameContext& frame, const Camera& camera, const ShadingClasses& classes,
-              ThreadState& thread);
+              const OutputBindings* outputs, ThreadState& thread);
 
-    // Sets colour and opacity, clamped to 0..1, of out[i] where hits[i] is valid.
-    void shade(const ShadingRays& rays, std::span<const geo::Hit> hits, std::span<Sample> out);
+    // Sets colour and opacity, clamped to 0..1, of out[i] where hits[i] is valid, and of outputs
+    // the channels from out_extra[i * num_channels] on.
+    void shade(const ShadingRays& rays, std::span<const geo::Hit> hits, std::span<Sample> out,
+               std::span<float> out_extra);
 
 private:
     // Hits that may share a batch.
@@ -69,19 +73,29 @@ private:
     std::uint32_t new_group(std::uint32_t shading_class, std::uint32_t attributes);
 
     void shade_group(const Group& group);
+    [[nodiscard]] std::uint64_t shown_variables(std::uint32_t shading_class) const {
+        return outputs_ != nullptr ? outputs_->variables(shading_class) : 0;
+    }
     void shade_batch(const Group& group, std::span<const std::uint32_t> members);
-    void gather(const ShadingClass& c, std::span<const std::uint32_t> members);
+    void gather(const ShadingClass& c, std::uint64_t shown, std::span<const std::uint32_t> members);
     void gather_hits(const ShadingClass& c, std::span<const std::uint32_t> members);
-    void run_surface(const ShadingClass& c, Execution& execution,
-                     std::span<const std::uint32_t> members);
+    // Returns the planes of the variables, those of `shown` among them.
+    sl_points run_surface(const ShadingClass& c, std::uint64_t shown, Execution& execution,
+                          std::span<const std::uint32_t> members);
     void run_atmosphere(const ShaderEntry& shader, const Execution& surface,
                         std::span<const std::uint32_t> members);
     [[nodiscard]] geo::Incident incident(std::uint32_t count) const;
     void fill_own_variables(rt::ShadeBatch& batch, std::uint32_t count) const;
     void fill_seeds(rt::ShadeBatch& batch, std::span<const std::uint32_t> members) const;
     void run(rt::ShadeBatch& batch, Execution& execution);
-    void scatter(std::span<const std::uint32_t> members, const ShaderEntry& shader);
+    // False if some result is no number.
+    [[nodiscard]] bool scatter(std::span<const std::uint32_t> members);
     void blacken_bad(std::span<const std::uint32_t> members, const ShaderEntry& shader);
+
+    // What displays show: hit_outputs.cpp.
+    void add_shown_planes(std::uint64_t variables, sl_points& planes);
+    void scatter_outputs(std::uint32_t shading_class, const sl_points& planes,
+                         std::span<const std::uint32_t> members, const ShaderEntry& shader);
 
     // Primitive variables in place of parameters: hit_overrides.cpp.
     // Uniform parameters take one value per batch: brings members from `begin` on with the value of
@@ -99,12 +113,14 @@ private:
     const FrameContext& frame_;
     const Camera& camera_;
     const ShadingClasses& classes_;
+    const OutputBindings* outputs_;
     ThreadState& thread_;
 
     ShadingRays rays_;
     std::span<const geo::Hit> hits_;
     std::span<const geo::Hit> subject_hits_; // of the batch in work
     std::span<Sample> out_;
+    std::span<float> out_extra_;
     std::vector<Group> groups_;
     std::vector<std::uint32_t> group_of_class_; // no_id: none yet
     std::unordered_map<Key, std::uint32_t, KeyHash> group_of_key_;
@@ -113,6 +129,11 @@ private:
     float *Ci_ = nullptr, *Oi_ = nullptr; // results of the batch in work, planes of stride_
     std::uint32_t stride_ = 0;
     std::vector<float> values_;
+    // Planes of one variable that only displays ask for.
+    struct alignas(64) ShownPlanes {
+        std::array<float, 3 * Batch::size> values;
+    };
+    std::vector<ShownPlanes> shown_planes_;
 };
 
 } // namespace trace

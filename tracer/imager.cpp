@@ -112,7 +112,7 @@ private:
 } // namespace
 
 void run_imager(const FrameContext& frame, const ShaderEntry& imager, Image& image, int num_threads,
-                Counters& counters) {
+                Counters& counters, bool prints) {
     const std::size_t num_pixels = image.pixels.area();
     const std::size_t num_batches = (num_pixels + SL_BATCH_MAX - 1) / SL_BATCH_MAX;
     std::vector<ThreadState> threads(static_cast<std::size_t>(base::thread_count(num_threads)));
@@ -124,7 +124,10 @@ void run_imager(const FrameContext& frame, const ShaderEntry& imager, Image& ima
         run.run(
             thread, first,
             static_cast<std::uint32_t>(std::min<std::size_t>(SL_BATCH_MAX, num_pixels - first)));
-        printed[item].swap(thread.printed);
+        if (prints) {
+            printed[item].swap(thread.printed);
+        }
+        thread.printed.clear();
         return true;
     });
     for (const std::string& text : printed) {

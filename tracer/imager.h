@@ -10,9 +10,9 @@ namespace trace {
 
 struct ShaderEntry;
 
-// Changes colour, opacity and alpha of the picture in place; depth stays. What is no number becomes
-// 0.
+// Changes colour, opacity and alpha of the picture in place; depth and extra channels stay. What is
+// no number becomes 0. prints: printf is heard.
 void run_imager(const FrameContext& frame, const ShaderEntry& imager, Image& image, int num_threads,
-                Counters& counters);
+                Counters& counters, bool prints = true);
 
 } // namespace trace

@@ -36,13 +36,19 @@ float positive_or(float value, float fallback) {
 } // namespace
 
 Exposure exposure_of(const rib::Options& options, const rib::Display& display) {
-    Exposure e{options.gain, options.gamma};
-    if (const rib::Param* both = display.params.find("exposure");
-        both != nullptr && both->floats.size() >= 2) {
-        e = {both->floats[0], both->floats[1]};
+    return exposure_over({options.gain, options.gamma}, display.params, {});
+}
+
+Exposure exposure_over(Exposure base, const rib::ParamList& first, const rib::ParamList& second) {
+    Exposure e = base;
+    for (const rib::ParamList* params : {&second, &first}) {
+        if (const std::vector<float> both = params->get_numbers("exposure"); both.size() >= 2) {
+            e = {both[0], both[1]};
+        }
+        e.gain = params->get_float("gain", e.gain);
+        e.gamma = params->get_float("gamma", e.gamma);
     }
-    e.gain = display.params.get_float("gain", e.gain);
-    e.gamma = positive_or(display.params.get_float("gamma", e.gamma), 1);
+    e.gamma = positive_or(e.gamma, 1);
     return e;
 }
 

@@ -20,6 +20,10 @@ struct Exposure {
 // Options with the display's own "exposure", "gain", "gamma" over them. Displays that differ here
 // need their own copy of the picture, exposed and run through the imager.
 [[nodiscard]] Exposure exposure_of(const rib::Options& options, const rib::Display& display);
+// An exposure with the "exposure", "gain" and "gamma" of one list over it; those of `first` come
+// before.
+[[nodiscard]] Exposure exposure_over(Exposure base, const rib::ParamList& first,
+                                     const rib::ParamList& second);
 // (color gain)^(1/gamma); negative values keep their sign. gamma <= 0 counts as 1.
 class Exposer {
 public:

@@ -144,7 +144,7 @@ double render_seconds(Setting& s, const FrameContext& frame, const ShadingClasse
                       const FilterWeights& weights) {
     return seconds_of([&] {
         const auto picture = new_film(s, weights);
-        BucketRenderer renderer(frame, s.camera, s.sampler, classes,
+        BucketRenderer renderer(frame, s.camera, s.sampler, classes, nullptr,
                                 visibility_options(s.scene.options));
         for (std::size_t b = 0; b < picture->num_buckets(); ++b) {
             renderer.render(b, *picture);

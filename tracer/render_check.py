@@ -87,6 +87,18 @@ class Render(unittest.TestCase):
         self.run_render("-o", "b.png", "map.rib")
         self.assertNotIn("b.png", self.files())
 
+    def test_openimageio_is_loaded_only_for_its_formats(self):
+        for name, loads in (("a.exr", False), ("a.tif", False), ("a.png", False), ("a.jpg", True)):
+            self.write("scene.rib", self.scene(name))
+            environment = dict(self.environment, LD_DEBUG="files")
+            process = subprocess.run([RENDER, "scene.rib"], cwd=self.folder.name, env=environment, timeout=100,
+                                     capture_output=True, text=True, check=False)
+            self.assertEqual(process.returncode, 0)
+            if not loads:
+                self.assertNotIn("OpenImageIO", process.stderr)
+            elif os.path.exists(self.path("a.jpg")):  # else the module is not installed, and it is a TIFF
+                self.assertIn("OpenImageIO", process.stderr)
+
     def test_strict_counts_warnings(self):
         self.write("warn.rib", 'Option "nonsense" "uniform float x" [1]\n' + self.scene())
         self.assertEqual(self.run_render("warn.rib")[0], 0)

@@ -78,25 +78,6 @@ std::string_view param_name(const sl_object& object, std::string_view written) {
     return written;
 }
 
-rib::ParamType rib_type_of(int type) {
-    switch (type) {
-    case SL_TYPE_color:
-        return rib::ParamType::Color;
-    case SL_TYPE_point:
-        return rib::ParamType::Point;
-    case SL_TYPE_vector:
-        return rib::ParamType::Vector;
-    case SL_TYPE_normal:
-        return rib::ParamType::Normal;
-    case SL_TYPE_matrix:
-        return rib::ParamType::Matrix;
-    case SL_TYPE_string:
-        return rib::ParamType::String;
-    default:
-        return rib::ParamType::Float;
-    }
-}
-
 rib::ParamDecl declaration(const rib::Param& param, const sl_param* wanted) {
     rib::ParamDecl decl = param.decl;
     if (param.guessed && wanted != nullptr) {

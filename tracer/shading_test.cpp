@@ -108,8 +108,8 @@ protected:
         base::parallel_for(film->num_buckets(), num_threads, [&](std::size_t bucket, int slot) {
             auto& renderer = renderers[static_cast<std::size_t>(slot)];
             if (!renderer) {
-                renderer = std::make_unique<BucketRenderer>(frame, camera, sampler, classes,
-                                                            visibility_options(scene.options));
+                renderer = std::make_unique<BucketRenderer>(
+                    frame, camera, sampler, classes, nullptr, visibility_options(scene.options));
             }
             renderer->render(bucket, *film);
             return true;

@@ -33,6 +33,26 @@ namespace trace {
     return SL_TYPE_void;
 }
 
+// The other way.
+[[nodiscard]] constexpr rib::ParamType rib_type_of(int type) {
+    switch (type) {
+    case SL_TYPE_color:
+        return rib::ParamType::Color;
+    case SL_TYPE_point:
+        return rib::ParamType::Point;
+    case SL_TYPE_vector:
+        return rib::ParamType::Vector;
+    case SL_TYPE_normal:
+        return rib::ParamType::Normal;
+    case SL_TYPE_matrix:
+        return rib::ParamType::Matrix;
+    case SL_TYPE_string:
+        return rib::ParamType::String;
+    default:
+        return rib::ParamType::Float;
+    }
+}
+
 // Points, vectors and normals may stand for each other; everything else must match.
 [[nodiscard]] constexpr bool types_agree(int a, int b) {
     const auto is_geometric = [](int type) {

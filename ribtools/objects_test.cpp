@@ -2,6 +2,7 @@
 // Objects and instances, motion blocks, archives, conditionals.
 #include "ribtools/scene_dump.h"
 #include "ribtools/test_util.h"
+#include "runtime/base/temp_dir.h"
 
 #include <cstdlib>
 #include <filesystem>
@@ -193,11 +194,6 @@ TEST(Motion, BadBlocksUseTheFirstSample) {
 
 class Folder : public testing::Test {
 protected:
-    void SetUp() override {
-        char name[] = "/tmp/perigee-rib-XXXXXX";
-        path_ = mkdtemp(name);
-    }
-    void TearDown() override { std::filesystem::remove_all(path_); }
     void write(const std::string& name, const std::string& text) const {
         std::filesystem::create_directories(
             std::filesystem::path(path_ + "/" + name).parent_path());
@@ -214,7 +210,8 @@ protected:
         std::fclose(null);
     }
 
-    std::string path_;
+    const base::TempDir dir_{"perigee-rib"};
+    const std::string path_ = dir_.path();
     rib_test::Collector backend_;
     rib::ReadStatus status_ = rib::ReadStatus::Ok;
     base::Code code_ = base::Code::None;

@@ -2,6 +2,7 @@
 // Compressed streams: whole, in members, cut, damaged, growing without end; as files and archives.
 #include "ribtools/rib_gzip.h"
 #include "ribtools/test_util.h"
+#include "runtime/base/temp_dir.h"
 
 #include <cstdlib>
 #include <filesystem>
@@ -108,11 +109,6 @@ TEST(Gzip, BombsAreRefused) {
 
 class GzipFiles : public testing::Test {
 protected:
-    GzipFiles() {
-        std::string pattern = (fs::temp_directory_path() / "perigee-XXXXXX").string();
-        dir_ = ::mkdtemp(pattern.data());
-    }
-    ~GzipFiles() override { fs::remove_all(dir_); }
     std::string put(const std::string& name, const std::string& bytes) {
         std::ofstream(dir_ / name, std::ios::binary) << bytes;
         return (dir_ / name).string();
@@ -131,7 +127,8 @@ protected:
         return status;
     }
 
-    fs::path dir_;
+    const base::TempDir temp_{"perigee"};
+    const fs::path dir_ = temp_.path();
     rib_test::Collector backend;
     std::vector<std::string> messages;
 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The system's preprocessor and the places of messages that come through it (sl.md 1.2).
+#include "runtime/base/temp_dir.h"
 #include "slc/process.h"
 #include "slc/slc_testing.h"
 
@@ -15,13 +16,6 @@ namespace fs = std::filesystem;
 // A directory of files that goes away again.
 class Files {
 public:
-    Files() {
-        std::string name = (fs::temp_directory_path() / "slc_test_XXXXXX").string();
-        dir_ = mkdtemp(name.data());
-    }
-    ~Files() { fs::remove_all(dir_); }
-    Files(const Files&) = delete;
-    Files& operator=(const Files&) = delete;
     std::string write(const std::string& name, const std::string& text) const {
         fs::create_directories((dir_ / name).parent_path());
         std::ofstream(dir_ / name, std::ios::binary) << text;
@@ -30,7 +24,8 @@ public:
     [[nodiscard]] std::string path(const std::string& name) const { return (dir_ / name).string(); }
 
 private:
-    fs::path dir_;
+    base::TempDir temp_{"slc-test"};
+    fs::path dir_ = temp_.path();
 };
 
 struct Result {

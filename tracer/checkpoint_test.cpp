@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Buckets kept and taken back: the same picture from any subset, whatever happened to the file.
+#include "runtime/base/temp_dir.h"
 #include "tracer/checkpoint.h"
 
 #include <algorithm>
@@ -24,17 +25,12 @@ using trace::Image;
 
 class Folder {
 public:
-    Folder() {
-        std::string pattern = (fs::temp_directory_path() / "checkpoint-XXXXXX").string();
-        path_ = ::mkdtemp(pattern.data());
+    [[nodiscard]] std::string file(const std::string& name) const {
+        return temp_.path() + "/" + name;
     }
-    ~Folder() { fs::remove_all(path_); }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-    [[nodiscard]] std::string file(const std::string& name) const { return path_ / name; }
 
 private:
-    fs::path path_;
+    base::TempDir temp_{"checkpoint"};
 };
 
 // A film with filters that reach into neighbours, one extra channel, and different samples

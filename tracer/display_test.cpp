@@ -2,6 +2,7 @@
 // Files written by the displays, read back with their libraries; drivers, modes, and what happens
 // when writing fails.
 #include "runtime/base/file.h"
+#include "runtime/base/temp_dir.h"
 #include "tracer/display.h"
 #include "tracer/display_format.h"
 
@@ -54,18 +55,13 @@ trace::Image test_image() {
 class DisplayTest : public testing::Test {
 protected:
     DisplayTest() {
-        std::string pattern = (fs::temp_directory_path() / "perigee-XXXXXX").string();
-        dir_ = ::mkdtemp(pattern.data());
         info_.xres = 40;
         info_.yres = 30;
         info_.pixel_aspect = 1.5;
         info_.camera_from_world = base::Mat4::translate({1, 2, 3});
         info_.ndc_from_world = base::Mat4::scale({0.25, -0.5, 1});
     }
-    ~DisplayTest() override {
-        fs::remove_all(dir_);
-        std::fclose(null_);
-    }
+    ~DisplayTest() override { std::fclose(null_); }
 
     [[nodiscard]] std::string path(const std::string& name) const { return (dir_ / name).string(); }
     [[nodiscard]] std::size_t entries() const {
@@ -85,7 +81,8 @@ protected:
     }
     [[nodiscard]] std::uint64_t warnings() const { return diag_.count(base::Severity::Warning); }
 
-    fs::path dir_;
+    const base::TempDir temp_{"perigee"};
+    const fs::path dir_ = temp_.path();
     std::FILE* null_ = std::fopen("/dev/null", "w");
     base::Diag diag_{null_};
     rib::Options options_;

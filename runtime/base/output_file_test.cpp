@@ -2,6 +2,7 @@
 // Files appear complete or not at all, whatever goes wrong in between.
 #include "runtime/base/file.h"
 #include "runtime/base/output_file.h"
+#include "runtime/base/temp_dir.h"
 
 #include <cerrno>
 #include <csignal>
@@ -20,16 +21,12 @@ using base::OutputFile;
 
 class OutputFileTest : public testing::Test {
 protected:
-    OutputFileTest() {
-        std::string pattern = (fs::temp_directory_path() / "perigee-XXXXXX").string();
-        dir_ = ::mkdtemp(pattern.data());
-    }
-    ~OutputFileTest() override { fs::remove_all(dir_); }
     [[nodiscard]] std::string path(const std::string& name) const { return (dir_ / name).string(); }
     [[nodiscard]] std::size_t entries() const {
         return static_cast<std::size_t>(std::distance(fs::directory_iterator(dir_), {}));
     }
-    fs::path dir_;
+    const base::TempDir temp_{"perigee"};
+    const fs::path dir_ = temp_.path();
 };
 
 void write_text(OutputFile& file, const std::string& text) {

@@ -91,7 +91,7 @@ int main() {
     const base::TempDir dir("slc-bench");
     base::Diag diag;
     const std::string source = dir.path() + "/layered.sl";
-    const std::string object = dir.path() + "/layered.slo";
+    const std::string object = dir.path() + "/made.slo"; // not where the search would find it
     std::ofstream(source) << long_shader();
     slc::ObjectOptions native;
     native.native_only = true;

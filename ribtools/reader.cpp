@@ -169,7 +169,7 @@ private:
         const std::vector<std::string> candidates = candidates_for(name);
         std::string why = "No such file or directory";
         for (const std::string& path : candidates) {
-            OpenResult opened = open_file(path);
+            OpenResult opened = open_archive(path);
             if (!opened.source) {
                 continue;
             }

@@ -35,9 +35,10 @@ constexpr std::array<CharClass, 256> classes = make_classes();
 // The longest name or number; a longer run of regular characters is garbage.
 constexpr std::size_t max_run = 64 * 1024;
 
-// Whether the text, standing between delimiters, is read as a request name.
-[[nodiscard]] constexpr bool is_request_name(std::string_view text) {
-    if (text.empty() || text.size() >= max_run || starts_number(text.front())) {
+// Whether the text, standing between delimiters, is one token: a name or number, well-formed or
+// not.
+[[nodiscard]] constexpr bool is_run(std::string_view text) {
+    if (text.empty() || text.size() >= max_run) {
         return false;
     }
     for (const char c : text) {
@@ -46,6 +47,9 @@ constexpr std::size_t max_run = 64 * 1024;
         }
     }
     return true;
+}
+[[nodiscard]] constexpr bool is_request_name(std::string_view text) {
+    return is_run(text) && !starts_number(text.front());
 }
 
 } // namespace rib

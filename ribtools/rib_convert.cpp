@@ -169,7 +169,7 @@ private:
         }
         const std::vector<std::string> readers(open_paths_.rbegin(), open_paths_.rend());
         for (const std::string& path : archive_candidates(name, archive_path_, readers)) {
-            OpenResult opened = open_file(path);
+            OpenResult opened = open_archive(path);
             if (!opened.source) {
                 continue;
             }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ribtools/rib_parse.h"
 
+#include "ribtools/rib_chars.h"
 #include "ribtools/spelling.h"
 
 #include <charconv>
@@ -526,22 +527,26 @@ Parser::Outcome Parser::basis(Arg& arg) {
     return name ? string(arg) : matrix(arg);
 }
 
-// A number, "3.03.1" (no number by the grammar), or a string holding one.
+// A number, "3.03.1" (no number by the grammar), or a string holding either.
 Parser::Outcome Parser::version(Arg& arg) {
     const TokenKind kind = token().kind;
-    if (kind != TokenKind::Number && kind != TokenKind::Bad && kind != TokenKind::String) {
-        return expected("a version number");
-    }
-    const bool is_text = kind != TokenKind::Number;
-    const Decimal d = scan_decimal(token().text.c_str());
-    if (is_text && !d.end) {
+    const std::string& text = token().text;
+    const bool is_malformed = kind == TokenKind::Bad && syntax_code() == base::Code::Syntax;
+    if (kind == TokenKind::Number) {
+        arg.numbers = {token().number};
+    } else if (kind == TokenKind::String || is_malformed) {
+        const Decimal d = scan_decimal(text.c_str());
+        if (!d.end || !is_run(text)) {
+            return expected("a version number");
+        }
+        arg.numbers = {to_double(d)};
+        if (d.end != text.data() + text.size()) {
+            arg.strings = {text};
+        }
+    } else {
         return expected("a version number");
     }
     arg.given = true;
-    arg.numbers = {is_text ? to_double(d) : token().number};
-    if (is_text) {
-        arg.strings = {token().text};
-    }
     lexer_.advance();
     return Outcome::Ok;
 }

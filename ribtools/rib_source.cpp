@@ -65,19 +65,28 @@ private:
     std::string error_;
 };
 
-} // namespace
-
-OpenResult open_file(const std::string& path) {
-    const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+template <class Accept> OpenResult open_path(const std::string& path, int flags, Accept accept) {
+    const int fd = ::open(path.c_str(), flags);
     if (fd < 0) {
         return {nullptr, std::strerror(errno)};
     }
     auto source = std::make_unique<FileSource>(fd, true);
     struct stat info {};
-    if (::fstat(fd, &info) == 0 && S_ISDIR(info.st_mode)) {
-        return {nullptr, std::strerror(EISDIR)};
+    if (::fstat(fd, &info) == 0 && !accept(info.st_mode)) {
+        return {nullptr, S_ISDIR(info.st_mode) ? std::strerror(EISDIR) : "not a regular file"};
     }
     return {open_gzip(std::move(source)), {}};
+}
+
+} // namespace
+
+OpenResult open_file(const std::string& path) {
+    return open_path(path, O_RDONLY | O_CLOEXEC, [](mode_t mode) { return !S_ISDIR(mode); });
+}
+
+OpenResult open_archive(const std::string& path) {
+    return open_path(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK,
+                     [](mode_t mode) { return S_ISREG(mode); });
 }
 
 std::unique_ptr<ByteSource> open_stdin() {

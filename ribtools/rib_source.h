@@ -30,6 +30,9 @@ struct OpenResult {
 
 // Directories and unreadable files are errors.
 [[nodiscard]] OpenResult open_file(const std::string& path);
+// The same, for names that come from a RIB: regular files only, since a pipe or device could keep
+// the reader waiting, or reading, for ever.
+[[nodiscard]] OpenResult open_archive(const std::string& path);
 [[nodiscard]] std::unique_ptr<ByteSource> open_stdin();
 // Keeps the text.
 [[nodiscard]] std::unique_ptr<ByteSource> open_memory(std::shared_ptr<const std::string> text);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ribtools/rib_write.h"
 
+#include "ribtools/rib_chars.h"
+
 #include <algorithm>
 #include <charconv>
 
@@ -90,7 +92,7 @@ void Writer::argument(char code, const Arg& arg) {
         handle(arg);
         break;
     case 'v':
-        if (!arg.strings.empty()) { // "3.03.1", which is no number
+        if (!arg.strings.empty() && is_run(arg.strings.front())) { // "3.03.1", which is no number
             encoder_->bare(arg.strings.front());
         } else {
             encoder_->number(arg.numbers.empty() ? 0 : arg.numbers.front());

@@ -12,7 +12,10 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <gtest/gtest.h>
+#include <iterator>
 #include <limits>
 #include <random>
 
@@ -146,23 +149,45 @@ TEST(Write, ExamplesOfEveryRequest) {
 }
 
 // Text -> binary -> text -> gzipped binary -> text gives the same text, and the same scene as the
-// file it began with.
+// stream it began with.
+void expect_same_scenes(const std::string& stream, const std::string& name) {
+    const std::string text = to_text(stream);
+    const std::string binary = convert(text, {RibForm::Binary, 0});
+    EXPECT_EQ(to_text(binary), text) << name;
+    EXPECT_EQ(to_text(convert(binary, {RibForm::Binary, 0}, true)), text) << name;
+    EXPECT_EQ(to_text(convert(text, {RibForm::Text, 2}, true)), text) << name;
+    const Reading a(stream), b(text), c(binary);
+    EXPECT_EQ(b.messages.size(), c.messages.size()) << name << "\n" << b.said() << c.said();
+    ASSERT_EQ(a.backend.scenes.size(), b.backend.scenes.size()) << name;
+    ASSERT_EQ(a.backend.scenes.size(), c.backend.scenes.size()) << name;
+    for (std::size_t i = 0; i < a.backend.scenes.size(); ++i) {
+        const std::string scene = rib::dump(*a.backend.scenes[i]);
+        EXPECT_EQ(scene, rib::dump(*b.backend.scenes[i])) << name;
+        EXPECT_EQ(scene, rib::dump(*c.backend.scenes[i])) << name;
+    }
+}
+
 TEST(Write, AllFormsMakeTheSameScene) {
     for (const rib_test::Example& e : rib_test::examples) {
-        const std::string text = to_text(e.text);
-        const std::string binary = convert(text, {RibForm::Binary, 0});
-        EXPECT_EQ(to_text(binary), text) << e.name;
-        EXPECT_EQ(to_text(convert(binary, {RibForm::Binary, 0}, true)), text) << e.name;
-        EXPECT_EQ(to_text(convert(text, {RibForm::Text, 2}, true)), text) << e.name;
-        const Reading a(e.text), b(text), c(binary);
-        EXPECT_EQ(a.messages.size(), b.messages.size()) << b.said();
-        EXPECT_EQ(a.messages.size(), c.messages.size()) << c.said();
-        ASSERT_EQ(a.backend.scenes.size(), c.backend.scenes.size());
-        for (std::size_t i = 0; i < a.backend.scenes.size(); ++i) {
-            EXPECT_EQ(rib::dump(*a.backend.scenes[i]), rib::dump(*b.backend.scenes[i]));
-            EXPECT_EQ(rib::dump(*a.backend.scenes[i]), rib::dump(*c.backend.scenes[i]));
+        expect_same_scenes(e.text, e.name);
+        EXPECT_EQ(Reading(e.text).messages.size(), Reading(to_text(e.text)).messages.size());
+    }
+}
+
+TEST(Write, AllFormsOfTheSuite) {
+    std::size_t num_files = 0;
+    for (const char* folder : {"/testsuite/cases", "/examples"}) {
+        for (const auto& entry :
+             std::filesystem::recursive_directory_iterator(std::string(SOURCE_ROOT) + folder)) {
+            if (entry.path().extension() == ".rib") {
+                std::ifstream file(entry.path(), std::ios::binary);
+                const std::string stream{std::istreambuf_iterator<char>(file), {}};
+                expect_same_scenes(stream, entry.path().string());
+                ++num_files;
+            }
         }
     }
+    EXPECT_GT(num_files, 100u);
 }
 
 // --- arguments at random ---

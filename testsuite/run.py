@@ -23,7 +23,7 @@ import rows
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(HERE)
 SKIP = 77
-MESSAGE = re.compile(r"^(?:(?P<place>[^\s:]+(?::\d+){0,2}): )(?P<severity>info|warning|error|severe): (?P<text>.*)$")
+MESSAGE = re.compile(r"^(?:(?P<place>[^\s:]+(?::byte \d+|(?::\d+){0,2})): )(?P<severity>info|warning|error|severe): (?P<text>.*)$")
 SANITIZER = re.compile(r"ERROR: \w+Sanitizer|WARNING: ThreadSanitizer|runtime error: |LeakSanitizer")
 
 

@@ -246,10 +246,10 @@ private:
         return k;
     }
 
+    // One row at that distance; the cells behind it are like all others.
     static void draw_together(Needs& needs, double border, double towards_inside, int halvings) {
-        double h = towards_inside;
-        for (int k = 0; k < halvings; ++k) {
-            h /= 2;
+        if (halvings > 0) {
+            const double h = std::ldexp(towards_inside, -halvings);
             needs.push_back(
                 {std::min(border, border + h), std::max(border, border + h), std::fabs(h)});
         }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace geo {
 
@@ -14,25 +15,42 @@ struct Interval {
     double lo, hi, spacing;
 };
 
-// Halves [lo, hi] until every need either covers an interval or misses it.
-void cut(std::span<const Need> needs, double lo, double hi, std::vector<Interval>& out) {
-    double spacing = hi - lo;
-    bool partial = false;
-    std::vector<Need> inside;
+// Cuts [0, 1] where needs begin and end.
+std::vector<Interval> cut(std::span<const Need> needs) {
+    struct Event {
+        double at, spacing;
+        bool begins;
+    };
+    std::vector<Event> events;
     for (const Need& n : needs) {
-        if (n.lo < hi && n.hi > lo && n.spacing < hi - lo) {
-            partial = partial || n.lo > lo || n.hi < hi;
-            spacing = std::min(spacing, n.spacing);
-            inside.push_back(n);
+        if (n.spacing < n.hi - n.lo) {
+            events.push_back({n.lo, n.spacing, true});
+            events.push_back({n.hi, n.spacing, false});
+        } else { // ends count all the same
+            events.push_back({n.lo, 1, true});
+            events.push_back({n.hi, 1, false});
         }
     }
-    const double middle = 0.5 * (lo + hi);
-    if (!partial || !(middle > lo && middle < hi)) {
-        out.push_back({lo, hi, spacing});
-        return;
+    std::sort(events.begin(), events.end(),
+              [](const Event& a, const Event& b) { return a.at < b.at; });
+    std::vector<Interval> out;
+    std::multiset<double> open;
+    double from = 0;
+    for (const Event& e : events) {
+        if (e.at > from) {
+            out.push_back({from, e.at, open.empty() ? 1 : *open.begin()});
+            from = e.at;
+        }
+        if (e.begins) {
+            open.insert(e.spacing);
+        } else {
+            open.erase(open.find(e.spacing));
+        }
     }
-    cut(inside, lo, middle, out);
-    cut(inside, middle, hi, out);
+    if (from < 1) {
+        out.push_back({from, 1, 1});
+    }
+    return out;
 }
 
 int segments_of(const Interval& i, double stretch) {
@@ -43,8 +61,7 @@ int segments_of(const Interval& i, double stretch) {
 } // namespace
 
 ParamAxis ParamAxis::covering(std::span<const Need> needs, int max_segments) {
-    std::vector<Interval> intervals;
-    cut(needs, 0, 1, intervals);
+    const std::vector<Interval> intervals = cut(needs);
     const auto total = [&](double stretch) {
         double sum = 0;
         for (const Interval& i : intervals) {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where the vertices of a diced part lie along one parameter: runs of equal segments over [0, 1].
 // Enters: needs, each "segments of [lo, hi] may be no longer than this", whose ends are dyadic
-// (k / 2^n). Leaves: the coarsest such axis whose runs are dyadic intervals. Most axes are one run
-// and hold no memory; those of parts that come near the eye have short segments there.
+// (k / 2^n), so that mirrored ones are exact. Leaves: the coarsest such axis with a vertex at all
+// those ends. Most axes are one run and hold no memory; those of parts that come near the eye have
+// short segments there.
 #pragma once
 
 #include <cstddef>

@@ -49,6 +49,7 @@ public:
         for (const rib::Instance& instance : scene_.instances) {
             add_instance(instance, cam_from_world, next_key);
         }
+        report_degenerate();
         return std::move(table_);
     }
 
@@ -57,6 +58,17 @@ private:
     const BuildOptions& options_;
     base::Diag& diag_;
     ShapeTable table_;
+    // Strips of exporters hold them by the thousand: told once.
+    std::size_t degenerate_ = 0;
+    base::SourcePos first_degenerate_;
+
+    void report_degenerate() {
+        if (degenerate_ > 0) {
+            diag_.report(Severity::Info, Code::None, first_degenerate_,
+                         "polygons without area are left out, here and in " +
+                             std::to_string(degenerate_ - 1) + " requests more");
+        }
+    }
 
     ShapeGroup add_group(const std::vector<rib::Primitive>& primitives, std::uint32_t object,
                          const Mat4& parent_from_world) {
@@ -213,7 +225,9 @@ private:
                      "refer to vertices that are not there; left out");
         report_count(p, faults.not_finite, Severity::Error, Code::Range,
                      "have coordinates that are not finite or above 1e18; left out");
-        report_count(p, faults.degenerate, Severity::Info, Code::None, "have no area; left out");
+        if (faults.degenerate > 0 && degenerate_++ == 0) {
+            first_degenerate_ = p.pos;
+        }
         report_count(p, faults.tangled, Severity::Warning, Code::Consistency,
                      "have outlines that cross; filled as well as it goes");
         return surface;

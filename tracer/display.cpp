@@ -301,6 +301,12 @@ bool leaves_file(const rib::Display& display) {
            (special->what != Special::Window && special->what != Special::Null);
 }
 
+bool keeps_floats(const rib::Display& display) {
+    const FormatRow* format = target_of(display).format;
+    return format != nullptr &&
+           (format->writer == Writer::Exr || format->numbers == FormatRow::Numbers::Float);
+}
+
 rib::Display file_of_window(const rib::Display& window, const std::string& default_file) {
     rib::Display file = window;
     file.type = "file";

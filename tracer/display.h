@@ -51,6 +51,8 @@ struct PictureInfo {
 // A display that shows the picture on a screen ("framebuffer"); one that leaves a file.
 [[nodiscard]] bool shows_window(const rib::Display& display);
 [[nodiscard]] bool leaves_file(const rib::Display& display);
+// Its file holds floats whatever Quantize says.
+[[nodiscard]] bool keeps_floats(const rib::Display& display);
 // The file that keeps the picture of a window: its name, with .tif unless that names a format.
 [[nodiscard]] rib::Display file_of_window(const rib::Display& window,
                                           const std::string& default_file);

@@ -102,12 +102,12 @@ public:
     struct Company {
         Checkpoint* checkpoint = nullptr;
         PixelTrace* trace = nullptr;
-        const rib::Display* shown = nullptr; // by settings.live, meanwhile
+        const DisplayPlan* shown = nullptr; // by settings.live, meanwhile
     };
     FrameResult render(Image& image, const Company& company) const;
 
 private:
-    bool show(Film& film, const rib::Display* shown) const;
+    bool show(Film& film, const DisplayPlan* shown) const;
     FrameResult render_buckets(Film& film, const Sampler& sampler,
                                const std::vector<std::size_t>& order, PixelTrace* trace) const;
     void add_world_stats() const;
@@ -143,7 +143,7 @@ int rows_at_once(const Film& film, const Sampler& sampler) {
 }
 
 // False: nobody watches.
-bool Frame::show(Film& film, const rib::Display* shown) const {
+bool Frame::show(Film& film, const DisplayPlan* shown) const {
     FilmObserver* viewer =
         shown != nullptr ? settings_.live->begin_frame(*shown, scene_.options, film.image().pixels,
                                                        film.num_buckets())
@@ -286,9 +286,9 @@ std::vector<rib::Display> displays_of(const rib::Options& options, const RenderS
     return displays;
 }
 
-const rib::Display* shown_display(const std::vector<rib::Display>& displays,
-                                  const RenderSettings& settings) {
-    return settings.live != nullptr ? settings.live->shown(displays) : nullptr;
+// The display that settings.live shows, or null.
+const DisplayPlan* shown_plan(const OutputSet& outputs, const RenderSettings& settings) {
+    return settings.live != nullptr ? settings.live->shown(outputs.displays()) : nullptr;
 }
 
 bool all_exist(const std::vector<rib::Display>& displays) {
@@ -331,29 +331,27 @@ std::string checkpoint_of(const std::vector<rib::Display>& displays,
 }
 
 FrameResult write_displays(const Frame& frame, const RenderSettings& settings,
-                           const FrameTools& tools, const std::vector<rib::Display>& displays,
-                           Image&& image) {
+                           const FrameTools& tools, Image&& image) {
     const PhaseTimer timer(tools.stats, Phase::write);
-    const rib::Display* shown = shown_display(displays, settings);
     const std::vector<DisplayPlan>& plans = frame.outputs().displays();
+    const DisplayPlan* shown = shown_plan(frame.outputs(), settings);
     Counters counters;
     Developer developer(frame.context(), frame.imager(), settings.num_threads, counters, plans,
                         std::move(image));
     FrameResult result = FrameResult::Done;
-    for (std::size_t i = 0; i < plans.size(); ++i) {
-        const bool is_shown = &displays[i] == shown;
+    for (const DisplayPlan& plan : plans) {
         if (wants_stop(settings, tools.diag)) {
             return FrameResult::Interrupted;
         }
-        if (!is_shown && !leaves_file(displays[i])) {
+        if (&plan != shown && !leaves_file(plan.display)) {
             continue;
         }
-        const Image& picture = developer.developed(plans[i]);
-        if (is_shown) {
+        const Image& picture = developer.developed(plan);
+        if (&plan == shown) {
             settings.live->show_final(picture);
         }
         const DisplayResult written =
-            write_display(plans[i], picture, picture_info(frame.camera()), tools.diag);
+            write_display(plan, picture, picture_info(frame.camera()), tools.diag);
         result = written == DisplayResult::Failed ? FrameResult::Failed : result;
     }
     frame.add_stats(counters);
@@ -427,11 +425,11 @@ FrameResult render_frame(const rib::Scene& scene, const RenderSettings& settings
         settings.checkpoint, checkpoint_of(displays, settings.checkpoint),
         [&frame] { return frame.hash(); }, tools.diag);
     Image image;
-    FrameResult result = frame.render(
-        image,
-        {.checkpoint = &checkpoint, .trace = nullptr, .shown = shown_display(displays, settings)});
+    FrameResult result = frame.render(image, {.checkpoint = &checkpoint,
+                                              .trace = nullptr,
+                                              .shown = shown_plan(frame.outputs(), settings)});
     if (result == FrameResult::Done) {
-        result = write_displays(frame, settings, tools, displays, std::move(image));
+        result = write_displays(frame, settings, tools, std::move(image));
     }
     if (result == FrameResult::Done) {
         checkpoint.remove();

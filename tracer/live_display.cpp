@@ -130,29 +130,43 @@ void LiveDisplay::start() {
 
 // --- frames
 
-const rib::Display* LiveDisplay::shown(std::span<const rib::Display> displays) const {
-    const auto window = std::ranges::find_if(displays, shows_window);
+const DisplayPlan* LiveDisplay::shown(std::span<const DisplayPlan> displays) const {
+    const auto window = std::ranges::find_if(displays, shows_window, &DisplayPlan::display);
     if (window != displays.end() && (settings_.framebuffers || settings_.every_frame)) {
         return &*window;
     }
     return settings_.every_frame && !displays.empty() ? &displays.front() : nullptr;
 }
 
-FilmObserver* LiveDisplay::begin_frame(const rib::Display& display, const rib::Options& options,
+namespace {
+
+// How the display's file holds color or alpha.
+Quantizer quantizer_of(const DisplayPlan& plan, ChannelRole role, const rib::Options& options) {
+    if (keeps_floats(plan.display)) {
+        return {0, 0, 0, 0, 0};
+    }
+    const auto channel = std::ranges::find(plan.channels, role, &ShownChannel::role);
+    return channel != plan.channels.end() ? channel->quantizer : quantizer(options.color_quantize);
+}
+
+} // namespace
+
+FilmObserver* LiveDisplay::begin_frame(const DisplayPlan& plan, const rib::Options& options,
                                        const PixelRange& pixels, std::size_t num_buckets) {
     start();
     if (!server_ && !tev_) {
         return nullptr;
     }
     LiveFrame frame;
-    frame.name = display.name;
+    frame.name = plan.display.name;
     frame.number = options.in_frame ? options.frame : 0;
     frame.pixels = pixels;
-    frame.exposure = exposure_of(options, display);
-    frame.color = frame.alpha = quantizer(options.color_quantize);
+    frame.exposure = plan.exposure;
+    frame.color = quantizer_of(plan, ChannelRole::Color, options);
+    frame.alpha = quantizer_of(plan, ChannelRole::Alpha, options);
     running_ = view_.begin_frame(frame, num_buckets);
     if (!running_) {
-        diag_.report_once("live-size", base::Severity::Warning, base::Code::Limit, display.pos,
+        diag_.report_once("live-size", base::Severity::Warning, base::Code::Limit, plan.display.pos,
                           "a picture of " + std::to_string(pixels.width()) + " by " +
                               std::to_string(pixels.height()) +
                               " pixels is too large to be shown while it renders");

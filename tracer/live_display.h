@@ -11,6 +11,7 @@
 #include "tracer/live_tev.h"
 #include "tracer/live_view.h"
 #include "tracer/live_web.h"
+#include "tracer/outputs.h"
 
 #include <cstdio>
 #include <memory>
@@ -51,9 +52,9 @@ public:
     [[nodiscard]] const std::string& address() const { return address_; } // of the page
 
     // Which of the displays is shown; null: the frame is not.
-    [[nodiscard]] const rib::Display* shown(std::span<const rib::Display> displays) const;
+    [[nodiscard]] const DisplayPlan* shown(std::span<const DisplayPlan> displays) const;
     // The observer for the film; null: not shown after all.
-    FilmObserver* begin_frame(const rib::Display& display, const rib::Options& options,
+    FilmObserver* begin_frame(const DisplayPlan& plan, const rib::Options& options,
                               const PixelRange& pixels, std::size_t num_buckets);
     void show_final(const Image& developed); // of the running frame
     void end_frame(bool complete);

@@ -45,6 +45,10 @@ rib::Display display(const char* name, const char* type) {
     return d;
 }
 
+trace::DisplayPlan plan(const char* name, const char* type = "file") {
+    return {display(name, type), {}, {}, -1};
+}
+
 class Live : public testing::Test {
 protected:
     Live() : out_(::open_memstream(&text_, &size_)), diag_(out_) {}
@@ -64,7 +68,7 @@ protected:
 };
 
 TEST_F(Live, WhichDisplayIsShown) {
-    const std::vector<rib::Display> files = {display("a.tif", "file"), display("b", "framebuffer")};
+    const std::vector<trace::DisplayPlan> files = {plan("a.tif", "file"), plan("b", "framebuffer")};
     LiveSettings settings;
     EXPECT_EQ(LiveDisplay(settings, diag_, out_).shown(files), nullptr);
     settings.framebuffers = true;
@@ -85,7 +89,7 @@ TEST_F(Live, OpensAPageAndEndsAtOnceWhenNobodyCame) {
     live.start(); // once
     EXPECT_TRUE(live.address().starts_with("http://127.0.0.1:")) << live.address();
     EXPECT_EQ(printed(), "perigee: info: the picture is shown at " + live.address() + "\n");
-    EXPECT_NE(live.begin_frame(display("a", "file"), {}, {0, 0, 4, 4}, 1), nullptr);
+    EXPECT_NE(live.begin_frame(plan("a.exr"), {}, {0, 0, 4, 4}, 1), nullptr);
     live.end_frame(true);
     live.finish([] { return false; });
 }
@@ -95,7 +99,7 @@ TEST_F(Live, AViewerThatWasAskedForAndIsNotThere) {
     settings.every_frame = true;
     settings.servers.tev = trace::TevAddress{"127.0.0.1", "1"};
     LiveDisplay live(settings, diag_, out_);
-    EXPECT_EQ(live.begin_frame(display("a", "file"), {}, {0, 0, 4, 4}, 1), nullptr);
+    EXPECT_EQ(live.begin_frame(plan("a"), {}, {0, 0, 4, 4}, 1), nullptr);
     EXPECT_EQ(diag_.count(base::Severity::Warning), 1U);
     live.finish([] { return false; });
 }

@@ -40,7 +40,7 @@ public:
     void flush();
 
 private:
-    static constexpr std::size_t capacity = 256 * 1024;
+    static constexpr std::size_t capacity = 64 * 1024;
     ByteSink& sink_;
     std::vector<char> bytes_;
     std::size_t used_ = 0;

@@ -41,11 +41,10 @@ Parser::Outcome Parser::keep_loose(Request& request) {
     request_name_ = request.name;
     arg_name_ = {};
     if (request.id == RequestId::Unknown) {
-        const std::string_view hint = similar_request(request.name);
         diag_.report_once("kept:" + request.name, base::Severity::Warning, base::Code::BadToken,
                           request.pos,
                           "unknown request '" + printable(request.name) + "': kept as it stands" +
-                              (hint.empty() ? "" : " (did you mean " + std::string(hint) + "?)"));
+                              hint_for(request.name));
     }
     lexer_.advance();
     while (token().kind != TokenKind::Name && token().kind != TokenKind::End) {

@@ -159,13 +159,20 @@ Parser::Outcome Parser::skip_request(const RequestId* id) {
                           std::string(table_row.name) + ": outside RI 3.2 (" +
                               std::string(table_row.note) + "); ignored");
     } else {
-        const std::string_view hint = similar_request(token().text);
         error(base::Severity::Error, base::Code::BadToken, token().pos,
-              "unknown request " + quote(token().text) + "; skipped" +
-                  (hint.empty() ? "" : " (did you mean " + std::string(hint) + "?)"));
+              "unknown request " + quote(token().text) + "; skipped" + hint_for(token().text));
     }
     lexer_.advance();
     return Outcome::Skip;
+}
+
+// " (did you mean Sphere?)", or nothing. Looking is dear, and one name is often wrong everywhere.
+std::string Parser::hint_for(const std::string& name) {
+    if (name != unknown_name_) {
+        unknown_name_ = name;
+        unknown_hint_ = similar_request(name);
+    }
+    return unknown_hint_.empty() ? "" : " (did you mean " + std::string(unknown_hint_) + "?)";
 }
 
 // Tells of NaN and infinities in the request just read.

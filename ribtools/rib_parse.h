@@ -62,6 +62,7 @@ private:
 
     bool next_name();
     Outcome skip_request(const RequestId* id);
+    [[nodiscard]] std::string hint_for(const std::string& name);
     Outcome parse(Request& request, const RequestRow& row);
     Outcome parse_args(Request& request, const RequestRow& row);
     Outcome parse_arg(char code, bool optional, Arg& arg);
@@ -121,6 +122,8 @@ private:
     bool token_used_ = true; // the current token belongs to the request handed out last
     std::string_view request_name_, arg_name_;
     std::uint64_t num_errors_ = 0;
+    std::string unknown_name_; // the last one, and what it may have meant
+    std::string_view unknown_hint_;
 };
 
 // "a number", "the string \"x\"", "the end of the file": for messages.

@@ -5,6 +5,9 @@
 usage: diagnosis_check.py path/to/render path/to/compiled/shaders
 """
 
+import base64
+import collections
+import html.parser
 import os
 import re
 import struct
@@ -45,6 +48,33 @@ WorldEnd
 def as_float(text):
     """The 32-bit number a text stands for."""
     return struct.unpack("f", struct.pack("f", float(text)))[0]
+
+
+class PageParser(html.parser.HTMLParser):
+    """Checks that tags nest; gathers text, tag counts and what the page loads."""
+
+    VOID = {"meta", "img", "br", "rect", "link", "input"}
+
+    def __init__(self):
+        super().__init__(convert_charrefs=True)
+        self.open, self.problems, self.text, self.sources = [], [], [], []
+        self.count = collections.Counter()
+
+    def handle_starttag(self, tag, attrs):
+        self.count[tag] += 1
+        self.sources += [value for name, value in attrs if name in ("src", "href") and not value.startswith("#")]
+        if tag not in self.VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attrs):
+        self.count[tag] += 1
+
+    def handle_endtag(self, tag):
+        if not self.open or self.open.pop() != tag:
+            self.problems.append(f"</{tag}> at {self.getpos()}")
+
+    def handle_data(self, data):
+        self.text.append(data)
 
 
 class Diagnosis(unittest.TestCase):
@@ -105,6 +135,34 @@ class Diagnosis(unittest.TestCase):
             # Two dozen float additions: a few parts in a million.
             mean = sum(w * float(r[k + 1]) for w, r in zip(weights, rows)) / total
             self.assertAlmostEqual(mean, float(filtered[k + 1]), delta=1e-5 * abs(mean) + 1e-9)
+
+    def test_report_is_one_well_formed_page(self):
+        name = "</td><script>alert(1)</script>'&"
+        with open(self.path("s.rib"), "w", encoding="utf-8") as file:
+            file.write(SCENE.replace('"the ball"', f'"{name}"').replace('Surface "plastic"', f'Surface "{name}"'))
+        self.assertEqual(self.render("--report", "r.html", "s.rib")[0], 1)  # there is no such shader
+        with open(self.path("r.html"), encoding="utf-8") as file:
+            page = file.read()
+        parser = PageParser()
+        parser.feed(page)
+        parser.close()
+        self.assertEqual((parser.open, parser.problems), ([], []))
+        self.assertEqual(parser.count["script"], 1)
+        self.assertEqual([u[:22] for u in parser.sources], ["data:image/png;base64,"])
+        png = base64.b64decode(parser.sources[0].split(",", 1)[1])
+        with open(self.path("preview.png"), "wb") as file:
+            file.write(png)
+        preview = pictures.read_picture(self.path("preview.png"))
+        self.assertEqual((preview.width, preview.height), (40, 30))
+        shown = " ".join(parser.text)
+        for expected in ("matte", "pointlight", "fog", "RIE_NOSHADER", "s.rib:16:1", f'no shader "{name}"', "gaussian 2 2"):
+            self.assertIn(expected, shown)
+
+    def test_reports_that_cannot_be_written(self):
+        for switch in ("--report", "--stats-json"):
+            code, _, messages = self.render(switch, "no/such/place", "s.rib")
+            self.assertEqual(code, 3)
+            self.assertIn(switch, messages)
 
     def test_several_pixels_and_errors(self):
         code, text, _ = self.render("--trace-pixel", "3", "4", "--trace-pixel", "5", "6", "s.rib")

@@ -111,7 +111,8 @@ struct FitResult {
 // Why there is no OpenImageIO; "" if there is.
 [[nodiscard]] std::string oiio_missing();
 
-// A PNG in memory, 8 bits a channel; "" if it cannot be made (no pixels, no memory).
-[[nodiscard]] std::string encode_png_rgb(int width, int height, std::span<const unsigned char> rgb);
+// A PNG in memory, 8 bits a channel, RGB or RGBA (not premultiplied) by the number of bytes; "" if
+// it cannot be made (no pixels, no memory).
+[[nodiscard]] std::string encode_png(int width, int height, std::span<const unsigned char> bytes);
 
 } // namespace trace

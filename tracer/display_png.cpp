@@ -111,21 +111,21 @@ WriteOutcome write_png(const FilePicture& picture, OutputFile& file) {
     return outcome;
 }
 
-std::string encode_png_rgb(int width, int height, std::span<const unsigned char> rgb) {
+std::string encode_png(int width, int height, std::span<const unsigned char> bytes) {
     png_image image{};
     image.version = PNG_IMAGE_VERSION;
     image.width = static_cast<png_uint_32>(std::max(width, 0));
     image.height = static_cast<png_uint_32>(std::max(height, 0));
-    image.format = PNG_FORMAT_RGB;
-    image.flags = PNG_IMAGE_FLAG_FAST;
     const std::size_t pixels = static_cast<std::size_t>(image.width) * image.height;
-    if (pixels == 0 || rgb.size() != 3 * pixels) {
+    if (pixels == 0 || (bytes.size() != 3 * pixels && bytes.size() != 4 * pixels)) {
         return {};
     }
+    image.format = bytes.size() == 3 * pixels ? PNG_FORMAT_RGB : PNG_FORMAT_RGBA;
+    image.flags = PNG_IMAGE_FLAG_FAST;
     std::string out(PNG_IMAGE_PNG_SIZE_MAX(image), '\0');
     png_alloc_size_t size = out.size();
     const int done =
-        png_image_write_to_memory(&image, out.data(), &size, 0, rgb.data(), 0, nullptr);
+        png_image_write_to_memory(&image, out.data(), &size, 0, bytes.data(), 0, nullptr);
     png_image_free(&image);
     out.resize(done != 0 ? size : 0);
     return out;

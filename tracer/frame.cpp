@@ -17,6 +17,7 @@
 #include "tracer/not_done.h"
 #include "tracer/output_bindings.h"
 #include "tracer/pixel_trace.h"
+#include "tracer/preview.h"
 #include "tracer/quantize.h"
 #include "tracer/sampler.h"
 #include "tracer/shader_set.h"
@@ -353,6 +354,9 @@ FrameResult write_displays(const Frame& frame, const RenderSettings& settings,
         const DisplayResult written =
             write_display(plan, picture, picture_info(frame.camera()), tools.diag);
         result = written == DisplayResult::Failed ? FrameResult::Failed : result;
+        if (tools.preview != nullptr && &display == &displays.front()) {
+            *tools.preview = make_preview(picture, display, scene.options);
+        }
     }
     frame.add_stats(counters);
     return result;

@@ -10,6 +10,7 @@
 #include "tracer/checkpoint.h"
 #include "tracer/film.h"
 #include "tracer/progress.h"
+#include "tracer/run_record.h"
 #include "tracer/stats.h"
 
 #include <string>
@@ -43,6 +44,7 @@ struct FrameTools {
     rt::StringTable& strings;
     base::Diag& diag;
     Stats& stats;
+    Preview* preview = nullptr; // a small picture of the first display, for reports
 };
 
 // The filtered picture, before exposure and imager; for tests and other users of the picture.

@@ -287,7 +287,7 @@ HttpReply LiveWeb::picture() const {
             }
         }
     }
-    std::string png = encode_png_rgb(whole.width(), whole.height(), rgb);
+    std::string png = encode_png(whole.width(), whole.height(), rgb);
     return png.empty() ? refuse(404, "no picture yet\n")
                        : HttpReply{200, "image/png", std::move(png)};
 }

@@ -288,6 +288,9 @@ private:
         case Id::stats_json:
             o.stats_json = values_[0];
             break;
+        case Id::report:
+            o.report = values_[0];
+            break;
         case Id::trace_pixel:
             o.trace_pixels.emplace_back(integer(0), integer(1));
             break;

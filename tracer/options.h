@@ -26,7 +26,7 @@ struct RenderOptions {
     std::vector<std::string> shader_path;
     std::vector<std::string> rib_texts; // -option
     std::vector<std::string> files;     // "-" is standard input
-    std::string stats_json;
+    std::string stats_json, report;
     std::vector<std::pair<int, int>> trace_pixels;
     CheckpointSettings checkpoint;
     ProgressMode progress = ProgressMode::Auto;

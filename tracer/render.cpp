@@ -174,6 +174,7 @@ trace::RendererConfig renderer_config(const trace::RenderOptions& options, base:
     config.settings.keep_existing = options.safe;
     config.settings.trace_pixels = options.trace_pixels;
     config.settings.checkpoint = options.checkpoint;
+    config.keep_previews = !options.report.empty();
     config.shaders.search_path = installed_shaders();
     config.shaders.trusted = trusted_directories(options);
     config.shaders.trust_all = options.allow_programs;
@@ -261,8 +262,11 @@ bool report_run(const trace::RenderOptions& options, const trace::RunRecord& run
     if (options.stats) {
         std::fputs(trace::run_text(run).c_str(), stderr);
     }
-    return options.stats_json.empty() ||
-           write_report("--stats-json", options.stats_json, trace::run_json(run), diag);
+    bool ok = options.stats_json.empty() ||
+              write_report("--stats-json", options.stats_json, trace::run_json(run), diag);
+    ok &= options.report.empty() ||
+          write_report("--report", options.report, trace::run_html(run), diag);
+    return ok;
 }
 
 int exit_code(rib::ReadStatus status, const trace::Renderer& renderer,

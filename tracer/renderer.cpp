@@ -70,7 +70,9 @@ FrameResult Renderer::render_recorded(const rib::Scene& scene) {
     frame.is_numbered = scene.options.in_frame;
     frame.options = frame_options(scene.options);
     const FrameResult result =
-        render_frame(scene, config_.settings, {library_, strings_, diag_, frame.stats});
+        render_frame(scene, config_.settings,
+                     {library_, strings_, diag_, frame.stats,
+                      config_.keep_previews ? &frame.preview : nullptr});
     frame.result = result_text(result);
     frame.stats.amounts[Amount::peak_bytes] = peak_memory_bytes();
     frame.num_messages = message_counts(diag_);

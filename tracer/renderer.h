@@ -21,6 +21,7 @@ struct RendererConfig {
     // How shaders are found, compiled and cached. The path of -shaders comes first, the standard
     // shaders last, whatever path a RIB sets between them.
     rt::ShaderLibrary::Config shaders;
+    bool keep_previews = false; // small pictures of the frames, for --report
 };
 
 class Renderer : public rib::Backend {

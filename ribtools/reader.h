@@ -40,6 +40,8 @@ struct Config {
     // Called at WorldBegin on the options of that world: switches that override the RIB (-crop,
     // -o). May be empty.
     std::function<void(Options&)> override_options;
+    // Told of every parameter of Option, as "group:name", when it is set. May be empty.
+    std::function<void(std::string_view, const Param&)> on_option;
     // Says whether a world is wanted (-frames); its primitives are neither kept nor rendered if
     // not. May be empty.
     std::function<bool(const Options&)> wants_world;

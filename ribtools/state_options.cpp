@@ -360,6 +360,9 @@ void State::do_Option(Request& request) {
             set_search_path(p);
         }
         options_.user[group + ":" + p.name] = p;
+        if (config_.on_option) {
+            config_.on_option(group + ":" + p.name, p);
+        }
     }
 }
 

@@ -94,7 +94,14 @@ void override_options(const trace::RenderOptions& options, rib::Options& rib_opt
     }
 }
 
-rib::Config reader_config(const trace::RenderOptions& options) {
+// Option "runtime" "verbosity"; -silent stands above it.
+void obey_verbosity(const trace::RenderOptions& options, trace::Verbosity verbosity,
+                    base::Diag& diag) {
+    const bool is_silent = options.silent || verbosity == trace::Verbosity::Silent;
+    diag.set_threshold(is_silent ? base::Severity::Error : base::Severity::Info);
+}
+
+rib::Config reader_config(const trace::RenderOptions& options, base::Diag& diag) {
     rib::Config config;
     config.default_paths["shader"] = default_shader_path();
     config.default_paths["texture"] = directories_from("TEXTURES");
@@ -103,7 +110,15 @@ rib::Config reader_config(const trace::RenderOptions& options) {
     config.default_paths["display"] = directories_from("DISPLAYS");
     config.allow_programs = options.allow_programs;
     config.defaults = rib_defaults(options);
-    config.override_options = [&options](rib::Options& o) { override_options(options, o); };
+    config.override_options = [&options, &diag](rib::Options& o) {
+        override_options(options, o);
+        obey_verbosity(options, trace::verbosity_of(o), diag);
+    };
+    config.on_option = [&options, &diag](std::string_view name, const rib::Param& value) {
+        if (name == "runtime:verbosity") {
+            obey_verbosity(options, trace::verbosity_of(&value), diag);
+        }
+    };
     config.wants_world = [&options](const rib::Options& o) {
         return !o.in_frame || trace::wants_frame(options, o.frame);
     };
@@ -175,6 +190,7 @@ trace::RendererConfig renderer_config(const trace::RenderOptions& options, base:
     config.settings.trace_pixels = options.trace_pixels;
     config.settings.checkpoint = options.checkpoint;
     config.keep_previews = !options.report.empty();
+    config.is_verbose = options.verbose;
     config.shaders.search_path = installed_shaders();
     config.shaders.trusted = trusted_directories(options);
     config.shaders.trust_all = options.allow_programs;
@@ -292,7 +308,7 @@ int run(const trace::RenderOptions& options, const std::vector<const char*>& arg
     trace::RendererConfig config = renderer_config(options, diag);
     config.settings.live = &live;
     trace::Renderer renderer(std::move(config), diag);
-    rib::Reader reader(renderer, diag, reader_config(options));
+    rib::Reader reader(renderer, diag, reader_config(options, diag));
     const rib::ReadStatus status = read_all(reader, renderer, options, diag);
     if (base::is_interrupted()) {
         live.finish(base::is_interrupted); // pages are told

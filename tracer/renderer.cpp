@@ -25,7 +25,11 @@ bool Renderer::render(std::unique_ptr<rib::Scene> scene) {
     if (scene->options.hider == "null") { // ri.md 6.5: no image
         return true;
     }
-    const FrameResult result = render_recorded(*scene);
+    say_what_is_done(scene->options);
+    FrameResult result = render_recorded(*scene);
+    if (!frame_statistics_.tell(scene->options, run_.frames.back())) {
+        result = std::max(result, FrameResult::Failed);
+    }
     result_ = std::max(result_, result);
     // Whatever spoilt this frame (a full disk, a directory that is not there) may spare the next.
     return result != FrameResult::Interrupted;
@@ -85,6 +89,20 @@ FrameResult Renderer::render_recorded(const rib::Scene& scene) {
     run_.frames.push_back(std::move(frame));
     read_since_ = Clock::now();
     return result;
+}
+
+// -v, or Option "runtime" "verbosity" "debug".
+void Renderer::say_what_is_done(const rib::Options& options) {
+    if (config_.is_verbose || verbosity_of(options) == Verbosity::Debug) {
+        diag_.report(base::Severity::Info, base::Code::None, {},
+                     "rendering " +
+                         (options.in_frame ? "frame " + std::to_string(options.frame)
+                                           : std::string("a picture")) +
+                         ": " + std::to_string(options.xres) + " by " +
+                         std::to_string(options.yres) + " pixels, " +
+                         std::to_string(options.xsamples) + " by " +
+                         std::to_string(options.ysamples) + " samples");
+    }
 }
 
 void Renderer::set_file(std::string name, std::string default_output) {

@@ -6,6 +6,7 @@
 #include "ribtools/backend.h"
 #include "runtime/shader.h"
 #include "tracer/frame.h"
+#include "tracer/frame_statistics.h"
 #include "tracer/run_record.h"
 
 #include <array>
@@ -22,6 +23,7 @@ struct RendererConfig {
     // shaders last, whatever path a RIB sets between them.
     rt::ShaderLibrary::Config shaders;
     bool keep_previews = false; // small pictures of the frames, for --report
+    bool is_verbose = false;    // -v
 };
 
 class Renderer : public rib::Backend {
@@ -53,7 +55,10 @@ private:
 
     FrameResult render_recorded(const rib::Scene& scene);
 
+    void say_what_is_done(const rib::Options& options);
+
     RunRecord run_;
+    FrameStatistics frame_statistics_{diag_};
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
     std::chrono::steady_clock::time_point read_since_ = start_;
     std::array<std::uint64_t, 4> messages_before_{};

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <map>
 
@@ -39,6 +40,23 @@ std::vector<std::string> whole_path(const ShaderLibrary::Config& config,
     }
     return path;
 }
+
+// Adds its life time to a sum of nanoseconds.
+class Stopwatch {
+public:
+    explicit Stopwatch(std::atomic<std::uint64_t>& sum_ns)
+        : sum_ns_(sum_ns), start_(std::chrono::steady_clock::now()) {}
+    ~Stopwatch() {
+        sum_ns_ += static_cast<std::uint64_t>(
+            std::chrono::nanoseconds(std::chrono::steady_clock::now() - start_).count());
+    }
+    Stopwatch(const Stopwatch&) = delete;
+    Stopwatch& operator=(const Stopwatch&) = delete;
+
+private:
+    std::atomic<std::uint64_t>& sum_ns_;
+    std::chrono::steady_clock::time_point start_;
+};
 
 } // namespace
 
@@ -92,12 +110,17 @@ struct ShaderLibrary::Impl {
     std::map<std::string, Name, std::less<>> names;
     std::map<std::string, Job, std::less<>> jobs; // by file
     std::atomic<bool> is_ending{false};
+    struct Counts {
+        std::atomic<std::uint64_t> objects{0}, cache_hits{0}, cache_misses{0}, compiled{0};
+        std::atomic<std::uint64_t> search_ns{0}, compile_ns{0}, load_ns{0};
+    } counts;
     const Cancelled cancelled;
     base::WorkQueue queue; // last: its threads use the rest
 
     // --- opening, on any thread, without the mutex
 
     const ShaderObject* keep(std::string key, std::unique_ptr<ShaderObject> object) {
+        ++counts.objects;
         const std::lock_guard lock(mutex);
         if (key.empty()) {
             return nameless.emplace_back(std::move(object)).get();
@@ -112,11 +135,13 @@ struct ShaderLibrary::Impl {
                 return it->second.get();
             }
         }
+        const Stopwatch watch(counts.load_ns);
         auto object = ShaderObject::open(path, strings, why);
         return object ? keep(path, std::move(object)) : nullptr;
     }
 
     const ShaderObject* open_bytes(std::string_view bytes, std::string& why) {
+        const Stopwatch watch(counts.load_ns);
         auto object = ShaderObject::open_bytes(bytes, strings, why);
         return object ? keep({}, std::move(object)) : nullptr;
     }
@@ -135,16 +160,22 @@ struct ShaderLibrary::Impl {
         std::string why; // a damaged entry is replaced
         const ShaderObject* object = cache.is_on() ? open(path, why) : nullptr;
         if (object) {
+            ++counts.cache_hits;
             ShaderCache::mark_used(path);
         }
         return object;
     }
 
     const ShaderObject* compile(const std::string& source, const std::string& key, Job& job) {
-        const auto bytes = config.compile(source, job.diag, cancelled);
+        ++counts.cache_misses;
+        const auto bytes = [&] {
+            const Stopwatch watch(counts.compile_ns);
+            return config.compile(source, job.diag, cancelled);
+        }();
         if (!bytes) {
             return nullptr;
         }
+        ++counts.compiled;
         std::string why = cache.is_on() ? cache.store(key, *bytes) : "off";
         if (!why.empty() && cache.is_on()) {
             job.diag.report_once("shader cache", base::Severity::Warning, base::Code::System, {},
@@ -170,7 +201,10 @@ struct ShaderLibrary::Impl {
                                  source + " is not compiled, and this program cannot compile it");
             return nullptr;
         }
-        const auto key = config.cache_key(source, job.diag, cancelled);
+        const auto key = [&] {
+            const Stopwatch watch(counts.search_ns);
+            return config.cache_key(source, job.diag, cancelled);
+        }();
         if (!key) {
             return nullptr;
         }
@@ -247,6 +281,7 @@ struct ShaderLibrary::Impl {
         Name& name = it->second;
         if (is_new) {
             const base::SourcePos here = name.diag.place_from(diag, pos);
+            const Stopwatch watch(counts.search_ns);
             ShaderPlace place = finder.find(stem, whole_path(config, path), here, name.diag);
             bool is_new_job = false;
             name.job =
@@ -316,6 +351,20 @@ void ShaderLibrary::prefetch(std::string_view name, base::SourcePos pos, Path pa
 
 void ShaderLibrary::stop() {
     impl_->stop();
+}
+
+LibraryStats ShaderLibrary::stats() const {
+    const auto seconds = [](std::uint64_t ns) { return 1e-9 * static_cast<double>(ns); };
+    const Impl::Counts& c = impl_->counts;
+    LibraryStats s;
+    s.objects = c.objects;
+    s.cache_hits = c.cache_hits;
+    s.cache_misses = c.cache_misses;
+    s.compiled = c.compiled;
+    s.search_seconds = seconds(c.search_ns);
+    s.compile_seconds = seconds(c.compile_ns);
+    s.load_seconds = seconds(c.load_ns);
+    return s;
 }
 
 const ShaderObject* ShaderLibrary::load(const std::string& slo_path, base::SourcePos pos) {

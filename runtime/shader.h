@@ -86,6 +86,16 @@ private:
 // Ends a compilation early when it returns true; may be empty.
 using Cancelled = std::function<bool()>;
 
+// What a library did so far. Seconds are summed over threads.
+struct LibraryStats {
+    std::uint64_t objects = 0;      // opened
+    std::uint64_t cache_hits = 0;   // sources whose object was in the cache
+    std::uint64_t cache_misses = 0; // ... was not, or there is no cache
+    std::uint64_t compiled = 0;
+    double search_seconds = 0; // looking for files, keys of the cache
+    double compile_seconds = 0, load_seconds = 0;
+};
+
 class ShaderLibrary {
 public:
     struct Config {
@@ -141,6 +151,8 @@ public:
     const ShaderObject* adopt(const sl_object& object);
 
     StringTable& strings() { return strings_; }
+
+    [[nodiscard]] LibraryStats stats() const;
 
 private:
     struct Impl;

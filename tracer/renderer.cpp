@@ -73,11 +73,11 @@ FrameResult Renderer::render_recorded(const rib::Scene& scene) {
     frame.number = scene.options.frame;
     frame.is_numbered = scene.options.in_frame;
     frame.options = frame_options(scene.options);
-    const FrameResult result =
-        render_frame(scene, config_.settings,
-                     {library_, strings_, diag_, frame.stats,
-                      config_.keep_previews ? &frame.preview : nullptr});
+    const FrameResult result = render_frame(
+        scene, config_.settings,
+        {library_, strings_, diag_, frame.stats, config_.keep_previews ? &frame.preview : nullptr});
     frame.result = result_text(result);
+    add_library_stats(frame.stats);
     frame.stats.amounts[Amount::peak_bytes] = peak_memory_bytes();
     frame.num_messages = message_counts(diag_);
     for (std::size_t i = 0; i < frame.num_messages.size(); ++i) {
@@ -103,6 +103,19 @@ void Renderer::say_what_is_done(const rib::Options& options) {
                          std::to_string(options.xsamples) + " by " +
                          std::to_string(options.ysamples) + " samples");
     }
+}
+
+// What the library did since the frame before: shaders are compiled while a scene is read.
+void Renderer::add_library_stats(Stats& stats) {
+    const rt::LibraryStats now = library_.stats(), &before = library_before_;
+    stats.counters[Counter::shader_objects] += now.objects - before.objects;
+    stats.counters[Counter::shader_hits] += now.cache_hits - before.cache_hits;
+    stats.counters[Counter::shader_misses] += now.cache_misses - before.cache_misses;
+    stats.counters[Counter::shader_compiles] += now.compiled - before.compiled;
+    stats.parts[Part::shader_search] += now.search_seconds - before.search_seconds;
+    stats.parts[Part::shader_compile] += now.compile_seconds - before.compile_seconds;
+    stats.parts[Part::shader_load] += now.load_seconds - before.load_seconds;
+    library_before_ = now;
 }
 
 void Renderer::set_file(std::string name, std::string default_output) {

@@ -55,10 +55,12 @@ private:
 
     FrameResult render_recorded(const rib::Scene& scene);
 
+    void add_library_stats(Stats& stats);
     void say_what_is_done(const rib::Options& options);
 
     RunRecord run_;
     FrameStatistics frame_statistics_{diag_};
+    rt::LibraryStats library_before_; // when the frame before was done
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
     std::chrono::steady_clock::time_point read_since_ = start_;
     std::array<std::uint64_t, 4> messages_before_{};

@@ -132,7 +132,7 @@ void times_card(Page& page, const Stats& stats) {
     for (const double seconds : stats.parts.values) {
         work += seconds;
     }
-    page.raw("</tbody></table>\n<h3>Work of all threads</h3><table><tbody>\n");
+    page.raw("</tbody></table>\n<h3>Parts, summed over threads</h3><table><tbody>\n");
     for (std::size_t i = 0; i < stats.parts.values.size(); ++i) {
         const double seconds = stats.parts.values[i];
         page.raw("<tr>").cell(without(rows_of(Part{})[i].text, "threads: ")).raw("<td>");

@@ -354,8 +354,8 @@ FrameResult write_displays(const Frame& frame, const RenderSettings& settings,
         const DisplayResult written =
             write_display(plan, picture, picture_info(frame.camera()), tools.diag);
         result = written == DisplayResult::Failed ? FrameResult::Failed : result;
-        if (tools.preview != nullptr && &display == &displays.front()) {
-            *tools.preview = make_preview(picture, display, scene.options);
+        if (tools.preview != nullptr && tools.preview->png.empty()) {
+            *tools.preview = make_preview(picture, plans[i]);
         }
     }
     frame.add_stats(counters);

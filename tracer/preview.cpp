@@ -44,7 +44,7 @@ std::uint8_t level(double value) {
 
 } // namespace
 
-Preview make_preview(const Image& image, const rib::Display& display, const rib::Options& options) {
+Preview make_preview(const Image& image, const DisplayPlan& plan) {
     Preview preview;
     const int width = image.pixels.width(), height = image.pixels.height();
     if (width == 0 || height == 0) {
@@ -54,8 +54,12 @@ Preview make_preview(const Image& image, const rib::Display& display, const rib:
         std::min(1.0, static_cast<double>(max_preview_px) / std::max(width, height));
     preview.width = std::max(1, static_cast<int>(width * scale));
     preview.height = std::max(1, static_cast<int>(height * scale));
-    const bool has_alpha = display.mode.find('a') != std::string::npos;
-    const bool is_encoded = options.color_quantize.one > 0;
+    const auto has_role = [&](ChannelRole role) {
+        return std::ranges::find(plan.channels, role, &ShownChannel::role) != plan.channels.end();
+    };
+    const bool has_alpha = has_role(ChannelRole::Alpha);
+    const bool is_encoded = !plan.channels.empty() &&
+                            plan.channels.front().quantizer.storage() != Storage::Float;
     std::vector<std::uint8_t> rgba;
     for (int y = 0; y < preview.height; ++y) {
         for (int x = 0; x < preview.width; ++x) {

@@ -58,8 +58,8 @@ Preview make_preview(const Image& image, const DisplayPlan& plan) {
         return std::ranges::find(plan.channels, role, &ShownChannel::role) != plan.channels.end();
     };
     const bool has_alpha = has_role(ChannelRole::Alpha);
-    const bool is_encoded = !plan.channels.empty() &&
-                            plan.channels.front().quantizer.storage() != Storage::Float;
+    const bool is_encoded =
+        !plan.channels.empty() && plan.channels.front().quantizer.storage() != Storage::Float;
     std::vector<std::uint8_t> rgba;
     for (int y = 0; y < preview.height; ++y) {
         for (int x = 0; x < preview.width; ++x) {

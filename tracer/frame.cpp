@@ -355,7 +355,7 @@ FrameResult write_displays(const Frame& frame, const RenderSettings& settings,
             write_display(plan, picture, picture_info(frame.camera()), tools.diag);
         result = written == DisplayResult::Failed ? FrameResult::Failed : result;
         if (tools.preview != nullptr && tools.preview->png.empty()) {
-            *tools.preview = make_preview(picture, plans[i]);
+            *tools.preview = make_preview(picture, plan);
         }
     }
     frame.add_stats(counters);

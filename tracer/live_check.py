@@ -174,7 +174,7 @@ class Live(unittest.TestCase):
         return messages
 
     def test_page_while_it_renders(self):
-        self.write("s.rib", scene(name="a.tif", size=400, samples=8))
+        self.write("s.rib", scene(size=200, samples=4))
         process = self.start("-d", "8", "--display-server", "web", "-t", "1", "s.rib")
         page = Page(self.url(process.stderr))
         status, html = page.get("")
@@ -184,7 +184,7 @@ class Live(unittest.TestCase):
         self.assertEqual(page.get("", {"Host": "elsewhere.example"})[0], 403)
         while not page.levels:
             page.ask()
-        self.assertEqual((page.news["width"], page.news["height"]), (400, 400))
+        self.assertEqual((page.news["width"], page.news["height"]), (200, 200))
         self.assertTrue(page.get("picture.png")[1].startswith(b"\x89PNG"))
         page.watch()
         self.assertEqual(page.news["state"], "done")

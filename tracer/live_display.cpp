@@ -195,6 +195,7 @@ using Clock = std::chrono::steady_clock;
 constexpr auto look_again = std::chrono::milliseconds(50);
 constexpr auto last_pixels = std::chrono::seconds(10); // for viewers to take the finished picture
 constexpr auto first_look = std::chrono::seconds(60);  // for somebody to open the page
+constexpr auto last_words = std::chrono::seconds(1);   // for pages between two requests
 constexpr auto reload = std::chrono::seconds(3);       // a page that is gone may come back
 
 } // namespace
@@ -240,6 +241,10 @@ void LiveDisplay::finish(bool (*interrupted)()) {
         wait_for_pages(interrupted);
     }
     view_.close();
+    const auto limit = Clock::now() + last_words;
+    while (server_ && web_->audience().now > 0 && Clock::now() < limit) {
+        std::this_thread::sleep_for(look_again);
+    }
     server_.reset();
 }
 

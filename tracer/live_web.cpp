@@ -253,6 +253,10 @@ HttpReply LiveWeb::update(const HttpRequest& request) {
         std::this_thread::sleep_for(gather);
     }
     const LiveUpdate update = view_.read(mark, pixels_at_once);
+    if (update.closing) { // it will not ask again
+        const std::lock_guard lock(mutex_);
+        pages_.erase(request.value("page"));
+    }
     std::string json = update_json(update);
     json.resize((json.size() + 3) / 4 * 4, ' '); // what follows is aligned
     std::string body;

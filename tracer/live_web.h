@@ -27,7 +27,8 @@ public:
     // Thread-safe; `update` waits up to a second.
     [[nodiscard]] HttpReply answer(const HttpRequest& request);
 
-    // Pages that asked within the last seconds; those of them that have everything.
+    // Pages that asked within the last seconds and were not told that nothing follows; those of
+    // them that have everything.
     struct Audience {
         std::size_t ever = 0, now = 0, up_to_date = 0;
     };

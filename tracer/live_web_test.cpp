@@ -126,15 +126,18 @@ TEST(LiveWeb, KnowsWhoHasThePicture) {
     (void)web.answer(request("/secret/update", {{"page", "p"}}));
     EXPECT_EQ(web.audience().now, 1U);
     EXPECT_EQ(web.audience().up_to_date, 0U);
-    view.close(); // it does not wait then
     (void)web.answer(request("/secret/update",
-                             {{"page", "p"}, {"frame", "1"}, {"change", "1"}, {"status", "2"}}));
+                             {{"page", "p"}, {"frame", "1"}, {"change", "1"}, {"status", "1"}}));
     EXPECT_EQ(web.audience().up_to_date, 1U);
     EXPECT_EQ(web.audience().ever, 1U);
     for (int i = 0; i < 1000; ++i) { // nobody fills the memory with names
         (void)web.answer(request("/secret/update", {{"page", "n" + std::to_string(i)}}));
     }
     EXPECT_LE(web.audience().now, 64U);
+    const std::size_t before = web.audience().now;
+    view.close();
+    (void)web.answer(request("/secret/update", {{"page", "p"}}));
+    EXPECT_EQ(web.audience().now, before - 1); // told: it goes
 }
 
 TEST(LiveWeb, LevelsAreThoseOfTheFile) {

@@ -152,8 +152,12 @@ TEST(Preprocess, ExplosionIsStopped) {
         }
         text += "\n";
     }
-    const ProcessResult direct = run_process(
-        {"sh", "-c", "while :; do echo yyyyyyyyyyyyyyyy; done"}, "", {1 << 16, 5, 1u << 30});
+    ProcessSettings limits;
+    limits.output_bytes = 1 << 16;
+    limits.cpu_seconds = 5;
+    limits.memory_bytes = 1U << 30;
+    const ProcessResult direct =
+        run_process({"sh", "-c", "while :; do echo yyyyyyyyyyyyyyyy; done"}, "", limits);
     EXPECT_TRUE(direct.cut_off);
     EXPECT_LE(direct.out.size(), 1U << 16);
     const Result r = compile(files.write("bomb.sl", "surface b() { Ci = 1; }\n" + text));

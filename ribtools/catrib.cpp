@@ -7,6 +7,7 @@
 #include "ribtools/reader.h"
 #include "ribtools/rib_convert.h"
 #include "ribtools/rib_gzip.h"
+#include "runtime/base/option_table.h"
 
 #include <algorithm>
 #include <charconv>
@@ -135,10 +136,8 @@ std::string usage_text() {
     constexpr std::size_t column = 16;
     std::string text = "usage: catrib [switches] [file.rib ... | -]\n";
     for (const Row& row : rows) {
-        std::string line = "  " + std::string(row.name) + (row.metavar.empty() ? "" : " ") +
-                           std::string(row.metavar);
-        line.resize(std::max(column, line.size() + 1), ' ');
-        text += line + std::string(row.help) + "\n";
+        const base::OptionRow line{row.name, row.arguments, row.metavar, row.help};
+        text += base::option_lines({&line, 1}, column, ' ');
     }
     return text;
 }

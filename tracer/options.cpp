@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/options.h"
 
+#include "runtime/base/option_table.h"
 #include "runtime/base/search_path.h"
 
 #include <algorithm>
@@ -334,10 +335,10 @@ std::string usage_text(const std::string& program) {
     constexpr std::size_t column = 30;
     std::string text = "usage: " + program + " [switches] [file.rib ... | -]\n";
     for (const Row& row : rows) {
-        std::string line = "  " + std::string(row.name) + (row.metavar.empty() ? "" : " ") +
-                           std::string(row.metavar);
-        line.resize(std::max(column, line.size() + 1), ' ');
-        text += line + std::string(row.help) + (row.state == State::LATER ? " (not yet)\n" : "\n");
+        const std::string help =
+            std::string(row.help) + (row.state == State::LATER ? " (not yet)" : "");
+        const base::OptionRow line{row.name, row.arguments, row.metavar, help};
+        text += base::option_lines({&line, 1}, column, ' ');
     }
     return text;
 }

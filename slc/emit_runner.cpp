@@ -26,7 +26,7 @@ std::uint32_t no_message(void*, std::int32_t, sl_string, std::int32_t, std::int3
                          std::uint32_t, float*) {
     return 0;
 }
-void no_print(void*, sl_string) {}
+void no_print(void*, std::uint32_t, sl_string) {}
 sl_string no_intern(void*, const char*) {
     return "";
 }
@@ -52,6 +52,7 @@ sl_services empty_services(rt::StringTable&) {
     s.space = identity_space;
     s.message = no_message;
     s.print = no_print;
+    s.print_uniform = no_print;
     s.intern = no_intern;
     s.shader_name = no_name;
     s.report = no_report;

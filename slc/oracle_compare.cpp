@@ -37,7 +37,7 @@ Comparison::Comparison(const Program& program, BuildWay way)
 std::string Comparison::run(std::uint32_t num_points) {
     const sl_services services = OracleWorld::services();
     world_.set_lanes(static_cast<std::uint32_t>(way_.lanes));
-    world_.printed().clear();
+    world_.begin_batch();
     const rt::ShaderInstance instance(*object_, {}, services, &world_, runner_.strings,
                                       runner_.diag);
     rt::ShadeBatch batch;
@@ -60,9 +60,9 @@ std::string Comparison::run(std::uint32_t num_points) {
     if (difference.empty()) {
         difference = compare_params(batch, oracle, num_points);
     }
-    // printf() of uniform values prints once per packet, the interpreter once for all points.
-    const std::set<std::string> mine(printed.begin(), printed.end());
-    const std::set<std::string> others(world_.printed().begin(), world_.printed().end());
+    // Packets print one after the other, the interpreter statement by statement.
+    const std::multiset<std::string> mine(printed.begin(), printed.end());
+    const std::multiset<std::string> others(world_.printed().begin(), world_.printed().end());
     if (difference.empty() && mine != others) {
         difference = "printed " + std::to_string(printed.size()) + " lines, the interpreter " +
                      std::to_string(world_.printed().size());

@@ -140,7 +140,12 @@ sl_services OracleWorld::services() {
     s.ambient = serve_ambient;
     s.space = serve_space;
     s.message = serve_message;
-    s.print = [](void* engine, sl_string text) { world_of(engine).print(text); };
+    s.print = [](void* engine, std::uint32_t, sl_string text) { world_of(engine).print(text); };
+    s.print_uniform = [](void* engine, std::uint32_t first, sl_string text) {
+        if (world_of(engine).uniform_prints_.is_new(first, text)) {
+            world_of(engine).print(text);
+        }
+    };
     s.intern = [](void* engine, const char* text) {
         return world_of(engine).strings().intern(text);
     };

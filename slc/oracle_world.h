@@ -6,6 +6,7 @@
 #pragma once
 
 #include "runtime/batch.h"
+#include "runtime/uniform_prints.h"
 #include "slc/interp.h"
 
 #include <string>
@@ -22,6 +23,10 @@ public:
     [[nodiscard]] std::uint32_t lanes() const { return lanes_; }
     void set_lanes(std::uint32_t lanes) { lanes_ = lanes; }
     [[nodiscard]] std::vector<std::string>& printed() { return printed_; }
+    void begin_batch() {
+        printed_.clear();
+        uniform_prints_.clear();
+    }
 
     // The value of an input variable or parameter component at a point: of moderate size, no two
     // alike.
@@ -48,6 +53,7 @@ private:
     rt::StringTable& strings_;
     std::uint32_t lanes_ = SL_LANES_MAX;
     std::vector<std::string> printed_;
+    rt::UniformPrints uniform_prints_; // of the batch in work
 };
 
 } // namespace slc

@@ -91,7 +91,8 @@ sl_services telling_services() {
     s.space = note_space;
     s.message = [](void*, std::int32_t, sl_string, std::int32_t, std::int32_t, std::uint32_t,
                    std::uint32_t, float*) -> std::uint32_t { return 0; };
-    s.print = [](void*, sl_string) {};
+    s.print = [](void*, std::uint32_t, sl_string) {};
+    s.print_uniform = [](void*, std::uint32_t, sl_string) {};
     s.intern = [](void* engine, const char* text) {
         return static_cast<Asked*>(engine)->strings->intern(text);
     };

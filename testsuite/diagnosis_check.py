@@ -108,6 +108,22 @@ class Diagnosis(unittest.TestCase):
             line = re.search(r"exposed, gain 1.5, gamma 2.2: color (\S+) (\S+) (\S+), .* alpha (\S+),", text)
             self.assertEqual([as_float(v) for v in line.groups()], list(picture.at(x, y)))
 
+    def test_levels_and_printed_text(self):
+        with open(self.path("talk.sl"), "w", encoding="utf-8") as file:
+            file.write('surface talk(output varying float depth = 0;) { depth = length(I); printf("at %f\\n", s); printf("once\\n"); Ci = Cs; Oi = Os; }')
+        with open(self.path("s.rib"), "w", encoding="utf-8") as file:
+            file.write(SCENE.replace('Quantize "rgba" 0 0 0 0', 'Display "+d.tif" "tiff" "varying float depth"')
+                       .replace('Surface "plastic" "Ks" .3', 'Surface "talk"'))
+        self.assertEqual(self.render("s.rib")[0], 0)
+        text = self.trace(20, 12)
+        picture = pictures.read_picture(self.path("a.tif"))
+        levels = [int(v) for v in re.findall(r'channel "[RGBA]" = \S+, level (\d+)', text)]
+        self.assertEqual(levels, [round(v * picture.levels) for v in picture.at(20, 12)])
+        self.assertRegex(text, r'channel "depth" = \S+')
+        # Two surfaces of the ball lie behind each other; each sample meets both.
+        self.assertEqual(len(re.findall(r'prints "at \S+\\012"', text)), 8)
+        self.assertEqual(len(re.findall(r'prints "once\\012"', text)), 8)
+
     def test_no_picture_is_written(self):
         self.trace(20, 15)
         self.assertEqual([n for n in os.listdir(self.folder.name) if n.endswith(".tif")], [])

@@ -9,6 +9,7 @@
 #include "ribtools/scene.h"
 #include "runtime/batch.h"
 #include "runtime/shader.h"
+#include "runtime/uniform_prints.h"
 #include "tracer/spaces.h"
 #include "tracer/stats.h"
 
@@ -88,12 +89,14 @@ public:
     rt::ShadeBatch* batch = nullptr;
     const BatchSubject* subject = nullptr;
     const Execution* asked_by = nullptr; // a light's: the execution that lights its points,
-    std::uint32_t asked_first = 0;       // and the index there of its first point
+    std::uint32_t asked_first = 0;       // the index there of its first point,
+    std::uint32_t asked_mask = 0;        // and the lanes that were asked
     const Execution* surface = nullptr;  // a volume's: the surface at its far end
     LightRun* current_light = nullptr;   // lightsource()
     int ray_level = 0;
     int ray_kind = SL_RAY_camera;
     SpaceCache spaces;
+    rt::UniformPrints uniform_prints;
 
     // Points per packet of the running variant: the plane length of everything the services
     // exchange.

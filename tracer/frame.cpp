@@ -363,9 +363,9 @@ FrameResult write_displays(const Frame& frame, const RenderSettings& settings,
 }
 
 // --trace-pixel: prints what the pixels did, writes no picture.
-FrameResult trace_pixels(const rib::Scene& scene, const Frame& frame,
-                         const RenderSettings& settings, const FrameTools& tools,
-                         const std::vector<rib::Display>& displays) {
+FrameResult trace_pixels(const Frame& frame, const RenderSettings& settings,
+                         const FrameTools& tools) {
+    const std::vector<DisplayPlan>& plans = frame.outputs().displays();
     const PixelRange rendered = frame.camera().raster().rendered();
     const FrameContext context = frame.context();
     for (const auto& [x, y] : settings.trace_pixels) {
@@ -381,16 +381,15 @@ FrameResult trace_pixels(const rib::Scene& scene, const Frame& frame,
             return result;
         }
         std::string text = trace.text();
-        for (const rib::Display& display : displays) {
-            Image picture = filtered;
-            const Exposure exposure = exposure_of(scene.options, display);
-            apply_exposure(picture, exposure);
-            text += display_title(display) + exposed_text(picture, exposure);
-            if (const ShaderEntry* imager = frame.imager()) {
-                Counters counters;
-                run_imager(context, *imager, picture, settings.num_threads, counters);
-                text += imaged_text(picture, imager->name);
-            }
+        Counters counters;
+        Developer exposed(context, nullptr, settings.num_threads, counters, plans, Image(filtered));
+        Developer developer(context, frame.imager(), settings.num_threads, counters, plans,
+                            std::move(filtered));
+        for (const DisplayPlan& plan : plans) {
+            text += display_text(plan, exposed.developed(plan));
+            const Image& picture = developer.developed(plan);
+            text += frame.imager() != nullptr ? imaged_text(picture, frame.imager()->name) : "";
+            text += channels_text(plan, picture);
         }
         std::fwrite(text.data(), 1, text.size(), stdout);
     }
@@ -423,7 +422,7 @@ FrameResult render_frame(const rib::Scene& scene, const RenderSettings& settings
         return FrameResult::Interrupted;
     }
     if (tracing) {
-        return trace_pixels(scene, frame, settings, tools, displays);
+        return trace_pixels(frame, settings, tools);
     }
     Checkpoint checkpoint(
         settings.checkpoint, checkpoint_of(displays, settings.checkpoint),

@@ -211,6 +211,7 @@ std::uint32_t LightRun::illuminate(std::uint32_t first, std::uint32_t lanes, std
     lanes_ = lanes;
     known_ = info_->is_constant ? ~0U : mask;
     execution_->asked_first = first;
+    execution_->asked_mask = mask;
     traced_ = clear_ = 0;
     batch_.restart();
     fill_points(mask, P, N);

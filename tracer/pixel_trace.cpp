@@ -220,6 +220,18 @@ void PixelTrace::after_shader(const Execution& execution, rt::ShadeBatch& batch)
     }
 }
 
+void PixelTrace::printed(std::uint32_t point, std::string_view text) {
+    if (SampleText* s = of_point(point)) {
+        line(s->text, at_shader, "prints " + quoted(text));
+    }
+}
+
+void PixelTrace::printed_uniform(std::uint32_t first, std::uint32_t lanes, std::string_view text) {
+    for (std::uint32_t lane = 0; lane < lanes; ++lane) {
+        printed(first + lane, text);
+    }
+}
+
 void PixelTrace::shaded(std::span<const std::uint32_t> members, std::span<const Sample> results) {
     for (std::size_t i = 0; i < members.size(); ++i) {
         if (SampleText* s = of_point(i)) {
@@ -404,15 +416,30 @@ void PixelTrace::finish(const Sampler& sampler, const FilterWeights& weights,
 
 // --- displays
 
-std::string display_title(const rib::Display& display) {
-    return "  display " + quoted(display.name) + ", mode " + quoted(display.mode) + "\n";
+std::string display_text(const DisplayPlan& plan, const Image& exposed) {
+    std::string text;
+    line(text, at_sample,
+         "display " + quoted(plan.display.name) + ", mode " + quoted(plan.display.mode));
+    line(text, at_ray,
+         "exposed, gain " + number_text(plan.exposure.gain) + ", gamma " +
+             number_text(plan.exposure.gamma) + ": " + pixel_text(exposed, 0));
+    return text;
 }
 
-std::string exposed_text(const Image& exposed, const Exposure& exposure) {
+std::string channels_text(const DisplayPlan& plan, const Image& developed) {
     std::string text;
-    line(text, at_ray,
-         "exposed, gain " + number_text(exposure.gain) + ", gamma " + number_text(exposure.gamma) +
-             ": " + pixel_text(exposed, 0));
+    for (const ShownChannel& c : plan.channels) {
+        float value = c.extra < 0 ? developed.plane(c.plane)[0]
+                                  : developed.extra[static_cast<std::size_t>(c.extra)][0];
+        value = c.output >= 0 && !(c.exposure == Exposure{}) ? Exposer(c.exposure)(value) : value;
+        std::string channel = "channel " + quoted(c.name) + " = " + number_text(value);
+        if (c.quantizer.storage() != Storage::Float) {
+            const float noise =
+                dither_noise(developed.pixels.x0, developed.pixels.y0, c.dither_channel);
+            channel += ", level " + std::to_string(Levels(c.quantizer)(value, noise));
+        }
+        line(text, at_ray, channel);
+    }
     return text;
 }
 

@@ -8,12 +8,13 @@
 #include "tracer/execution.h"
 #include "tracer/film.h"
 #include "tracer/filter.h"
-#include "tracer/quantize.h"
+#include "tracer/outputs.h"
 #include "tracer/sampler.h"
 
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace trace {
@@ -41,6 +42,9 @@ public:
                const sl_light_result& result, std::uint32_t reached, std::uint32_t shadowed);
     void ambient(rib::LightId id, rt::ShadeBatch& batch, std::uint32_t first, std::uint32_t mask);
     void shadow_rays(std::uint32_t first, const geo::RayPacket& rays, std::uint32_t blocked);
+    // printf of a point, or of uniform values in a packet.
+    void printed(std::uint32_t point, std::string_view text);
+    void printed_uniform(std::uint32_t first, std::uint32_t lanes, std::string_view text);
     // Colour and opacity as they go to the film, before compositing.
     void shaded(std::span<const std::uint32_t> members, std::span<const Sample> results);
     // All surfaces of a layer are in the samples; the ray of `sample` goes on, this much shows.
@@ -79,9 +83,10 @@ private:
 };
 
 // What becomes of the pixel on its way to a display; pictures of one pixel.
-[[nodiscard]] std::string display_title(const rib::Display& display);
-[[nodiscard]] std::string exposed_text(const Image& exposed, const Exposure& exposure);
+[[nodiscard]] std::string display_text(const DisplayPlan& plan, const Image& exposed);
 [[nodiscard]] std::string imaged_text(const Image& imaged, const std::string& imager);
+// Every channel of the file, with its level where the display quantises.
+[[nodiscard]] std::string channels_text(const DisplayPlan& plan, const Image& developed);
 // An error: the pixel is not one of those that are rendered.
 void report_outside(int x, int y, const PixelRange& rendered, base::Diag& diag);
 

@@ -6,6 +6,7 @@
 #include "tracer/execution.h"
 #include "tracer/lights.h"
 #include "tracer/messages.h"
+#include "tracer/pixel_trace.h"
 #include "tracer/shader_set.h"
 
 #include <algorithm>
@@ -126,8 +127,34 @@ uint32_t message(void* engine, int32_t kind, sl_string name, int32_t type, int32
     return answer_message(of(engine), {kind, name, type, array_length, first, mask, value});
 }
 
-void print(void* engine, sl_string text) {
-    if (ThreadState* thread = of(engine).thread) {
+// A light runs for whole packets, of which some lanes only were asked about: those print.
+bool may_print(const Execution& execution, std::uint32_t point, std::uint32_t num_points) {
+    const std::uint32_t lanes = ((1ULL << num_points) - 1) << point & 0xffffffffU;
+    return execution.asked_by == nullptr || (execution.asked_mask & lanes) != 0;
+}
+
+void print(void* engine, uint32_t point, sl_string text) {
+    Execution& execution = of(engine);
+    ThreadState* thread = execution.thread;
+    if (thread == nullptr || !may_print(execution, point, 1)) {
+        return;
+    }
+    if (thread->trace != nullptr) {
+        thread->trace->printed(execution.asked_first + point, text);
+    } else {
+        thread->printed += text;
+    }
+}
+
+void print_uniform(void* engine, uint32_t first, sl_string text) {
+    Execution& execution = of(engine);
+    ThreadState* thread = execution.thread;
+    if (thread == nullptr || !may_print(execution, first, execution.lanes())) {
+        return;
+    }
+    if (thread->trace != nullptr) {
+        thread->trace->printed_uniform(execution.asked_first + first, execution.lanes(), text);
+    } else if (execution.uniform_prints.is_new(execution.asked_first + first, text)) {
         thread->printed += text;
     }
 }

@@ -153,10 +153,10 @@ static int any_varying(const sl_value* values, int n) {
 void slu_printf(const sl_call* call, sl_string format, const sl_value* values, int n) {
     text t;
     print_lane(&t, format, values, n, sl_first_lane(call->live));
-    call->services->print(call->engine, t.bytes);
+    call->services->print_uniform(call->engine, call->first, t.bytes);
 }
 
-/* Once per point, or once if nothing varies. */
+/* Once per point, or once for all points of the batch if nothing varies (lib-009). */
 void slv_printf(const sl_call* call, sli mask, sl_string format, const sl_value* values, int n) {
     text t;
     const int once = !any_varying(values, n);
@@ -164,9 +164,11 @@ void slv_printf(const sl_call* call, sli mask, sl_string format, const sl_value*
         if (!mask[lane])
             continue;
         print_lane(&t, format, values, n, lane);
-        call->services->print(call->engine, t.bytes);
-        if (once)
+        if (once) {
+            call->services->print_uniform(call->engine, call->first, t.bytes);
             return;
+        }
+        call->services->print(call->engine, call->first + (uint32_t)lane, t.bytes);
     }
 }
 

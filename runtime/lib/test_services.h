@@ -189,7 +189,10 @@ private:
         return set;
     }
 
-    static void print_(void* engine, sl_string text) {
+    static void print_(void* engine, uint32_t, sl_string text) {
+        of(engine).printed.emplace_back(text);
+    }
+    static void print_uniform_(void* engine, uint32_t, sl_string text) {
         of(engine).printed.emplace_back(text);
     }
     static sl_string intern_(void* engine, const char* text) {

@@ -30,34 +30,35 @@ public:
         : diag_(diag), config_(std::move(config)), state_(backend, diag, config_, *this) {}
 
     ReadStatus read_path(const std::string& path) {
-        OpenResult opened = open_file(path);
+        OpenResult opened = open_file(path, config_.interrupted);
         if (!opened.source) {
-            diag_.report(base::Severity::Severe, base::Code::NoFile, {},
+            diag_.report(base::Severity::Error, base::Code::NoFile, {},
                          "cannot read " + printable(path) + ": " + opened.error);
             return ReadStatus::Environment;
         }
         return read_top(std::move(opened.source), path, path);
     }
 
+    ReadStatus read_stdin() { return read_top(open_stdin(config_.interrupted), "stdin", ""); }
+
     // A stream of its own: blocks opened in it end with it.
     ReadStatus read_top(std::unique_ptr<ByteSource> source, std::string_view name,
                         const std::string& path) {
+        bool stopped = false;
         try {
+            state_.restart();
             const std::size_t depth = state_.depth();
             const base::SourcePos start{diag_.file_id(name), 1, 1};
             Lexer lexer(std::move(source), start, &config_.on_comment);
             read_stream(lexer, path);
-            if (!state_.stopped()) {
-                state_.close_blocks(lexer.token().pos, depth, lexer.read_error().empty());
-            }
+            stopped = is_stopped();
+            state_.close_blocks(lexer.token().pos, depth, !stopped && lexer.read_error().empty());
         } catch (const std::bad_alloc&) {
             diag_.report(base::Severity::Severe, base::Code::NoMem, {}, "out of memory");
             return ReadStatus::Environment;
         }
         diag_.tell_repeated();
-        return failed_            ? ReadStatus::Environment
-               : state_.stopped() ? ReadStatus::Stopped
-                                  : ReadStatus::Ok;
+        return failed_ ? ReadStatus::Environment : stopped ? ReadStatus::Stopped : ReadStatus::Ok;
     }
 
     // --- StreamHost ---
@@ -101,6 +102,10 @@ public:
     std::size_t num_archives() const override { return archives_.size(); }
 
 private:
+    [[nodiscard]] bool is_stopped() const {
+        return state_.stopped() || (config_.interrupted != nullptr && config_.interrupted());
+    }
+
     struct Stream {
         Parser* parser;
         std::string
@@ -113,7 +118,7 @@ private:
         Parser parser(lexer, diag_, state_.dictionary(), state_.colors());
         streams_.push_back({&parser, path, {}});
         Request request;
-        while (!state_.stopped() && parser.next(request)) {
+        while (!is_stopped() && parser.next(request)) {
             const bool is_conditional =
                 request.id == RequestId::IfBegin || request.id == RequestId::ElseIf ||
                 request.id == RequestId::Else || request.id == RequestId::IfEnd;
@@ -217,7 +222,7 @@ ReadStatus Reader::read_file(const std::string& path) {
 }
 
 ReadStatus Reader::read_stdin() {
-    return impl_->read_top(open_stdin(), "stdin", "");
+    return impl_->read_stdin();
 }
 
 ReadStatus Reader::read_text(std::string_view text, std::string_view name) {

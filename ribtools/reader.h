@@ -42,9 +42,12 @@ struct Config {
     std::function<void(Options&)> override_options;
     // Told of every parameter of Option, as "group:name", when it is set. May be empty.
     std::function<void(std::string_view, const Param&)> on_option;
-    // Says whether a world is wanted (-frames); its primitives are neither kept nor rendered if
-    // not. May be empty.
+    // Says whether a world is wanted (-frames). If not, its primitives are neither kept nor
+    // rendered, its archives not read, and textures of its frame not made. May be empty.
     std::function<bool(const Options&)> wants_world;
+    // True once the user wants to stop: asked between requests and while input is awaited. May be
+    // null.
+    bool (*interrupted)() = nullptr;
     // Receives comments. May be empty.
     Lexer::CommentHandler on_comment;
 };

@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -16,7 +17,8 @@ namespace {
 
 class FileSource final : public ByteSource {
 public:
-    FileSource(int fd, bool owned) : fd_(fd), owned_(owned) {}
+    FileSource(int fd, bool owned, Interrupted interrupted)
+        : fd_(fd), owned_(owned), interrupted_(interrupted) {}
     ~FileSource() override {
         if (owned_) {
             ::close(fd_);
@@ -28,6 +30,10 @@ public:
     // Hands on what a pipe has: a program that writes RIB piece by piece is not kept waiting.
     std::size_t read(char* buffer, std::size_t size) override {
         for (;;) {
+            if (!wait()) {
+                error_ = "interrupted";
+                return 0;
+            }
             const ssize_t n = ::read(fd_, buffer, size);
             if (n >= 0) {
                 return static_cast<std::size_t>(n);
@@ -41,8 +47,25 @@ public:
     const std::string& error() const override { return error_; }
 
 private:
+    // Until there is something to read, or false when the user wants to stop. A signal may have
+    // come before the wait or in another thread: only asking again and again misses none.
+    bool wait() {
+        constexpr int interval_ms = 200;
+        if (interrupted_ == nullptr) {
+            return true;
+        }
+        pollfd input{fd_, POLLIN, 0};
+        while (!interrupted_()) {
+            if (::poll(&input, 1, interval_ms) > 0) {
+                return true; // end and errors included: read() tells
+            }
+        }
+        return false;
+    }
+
     int fd_;
     bool owned_;
+    Interrupted interrupted_;
     std::string error_;
 };
 
@@ -65,12 +88,13 @@ private:
     std::string error_;
 };
 
-template <class Accept> OpenResult open_path(const std::string& path, int flags, Accept accept) {
+template <class Accept>
+OpenResult open_path(const std::string& path, int flags, Interrupted interrupted, Accept accept) {
     const int fd = ::open(path.c_str(), flags);
     if (fd < 0) {
         return {nullptr, std::strerror(errno)};
     }
-    auto source = std::make_unique<FileSource>(fd, true);
+    auto source = std::make_unique<FileSource>(fd, true, interrupted);
     struct stat info {};
     if (::fstat(fd, &info) == 0 && !accept(info.st_mode)) {
         return {nullptr, S_ISDIR(info.st_mode) ? std::strerror(EISDIR) : "not a regular file"};
@@ -80,17 +104,18 @@ template <class Accept> OpenResult open_path(const std::string& path, int flags,
 
 } // namespace
 
-OpenResult open_file(const std::string& path) {
-    return open_path(path, O_RDONLY | O_CLOEXEC, [](mode_t mode) { return !S_ISDIR(mode); });
+OpenResult open_file(const std::string& path, Interrupted interrupted) {
+    return open_path(path, O_RDONLY | O_CLOEXEC, interrupted,
+                     [](mode_t mode) { return !S_ISDIR(mode); });
 }
 
 OpenResult open_archive(const std::string& path) {
-    return open_path(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK,
+    return open_path(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK, nullptr,
                      [](mode_t mode) { return S_ISREG(mode); });
 }
 
-std::unique_ptr<ByteSource> open_stdin() {
-    return open_gzip(std::make_unique<FileSource>(STDIN_FILENO, false));
+std::unique_ptr<ByteSource> open_stdin(Interrupted interrupted) {
+    return open_gzip(std::make_unique<FileSource>(STDIN_FILENO, false, interrupted));
 }
 
 std::unique_ptr<ByteSource> open_memory(std::shared_ptr<const std::string> text) {

@@ -28,12 +28,15 @@ struct OpenResult {
     std::string error;                  // why
 };
 
+// Asked while a read waits: true ends it as failed. Null: it waits as long as it takes.
+using Interrupted = bool (*)();
+
 // Directories and unreadable files are errors.
-[[nodiscard]] OpenResult open_file(const std::string& path);
+[[nodiscard]] OpenResult open_file(const std::string& path, Interrupted interrupted = nullptr);
 // The same, for names that come from a RIB: regular files only, since a pipe or device could keep
 // the reader waiting, or reading, for ever.
 [[nodiscard]] OpenResult open_archive(const std::string& path);
-[[nodiscard]] std::unique_ptr<ByteSource> open_stdin();
+[[nodiscard]] std::unique_ptr<ByteSource> open_stdin(Interrupted interrupted = nullptr);
 // Keeps the text.
 [[nodiscard]] std::unique_ptr<ByteSource> open_memory(std::shared_ptr<const std::string> text);
 

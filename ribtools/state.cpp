@@ -89,6 +89,11 @@ bool State::stopped() const {
     return stop_ || diag_.abort_requested();
 }
 
+void State::restart() {
+    stop_ = false;
+    diag_.clear_abort();
+}
+
 // --- messages ---
 
 void State::report(base::Severity severity, base::Code code, const Request& request,

@@ -51,6 +51,8 @@ public:
     [[nodiscard]] std::size_t depth() const { return blocks_.depth(); }
     // The backend returned false or the error handler asks to end the run.
     [[nodiscard]] bool stopped() const;
+    // What ended one stream does not end the next.
+    void restart();
 
     [[nodiscard]] const Dictionary& dictionary() const { return dictionary_; }
     [[nodiscard]] const ColorModel& colors() const { return colors_; }

@@ -342,7 +342,9 @@ void State::do_Resource(Request& request) {
 // --- requests about the stream ---
 
 void State::do_ReadArchive(Request& request) {
-    host_.read_archive(request.string(0), request.pos);
+    if (world_wanted_) { // what a picture nobody asked for consists of need not be found
+        host_.read_archive(request.string(0), request.pos);
+    }
 }
 
 void State::do_ArchiveBegin(Request& request) {

@@ -369,6 +369,9 @@ void State::do_Option(Request& request) {
 // --- textures ---
 
 void State::make_texture(Request& request) {
+    if (config_.wants_world && !config_.wants_world(options_)) {
+        return; // of a frame nobody asked for: what it is made from was not rendered
+    }
     TextureRequest t;
     const RequestRow& r = row(request.id);
     t.kind = r.name;

@@ -98,6 +98,9 @@ bool relay(std::string_view err, Messages& messages) {
         if (!message) {
             continue;
         }
+        if (message->text.starts_with("missing terminating")) {
+            continue; // a string without end: the lexer says it, as the error it is
+        }
         const Loc loc{messages.sources().add(message->file), message->line, message->col};
         // sl.md 1.2: unknown directives are only warned about.
         const bool unknown_directive = message->text.starts_with("invalid preprocessing directive");

@@ -192,7 +192,7 @@ void Checkpoint::remove() {
 }
 
 void Checkpoint::report_kept() const {
-    if (!settings_.enabled) {
+    if (!settings_.enabled || image_ == nullptr) { // or not begun
         return;
     }
     const std::string text = file_.is_open()

@@ -2,19 +2,9 @@
 // OpenEXR: scan lines, channels half or float as planned, one part or one for each layer; the crop
 // as data window in the frame's display window; worldToCamera, worldToNDC; alpha premultiplied.
 // Values are not quantised. Single-threaded: the bytes repeat.
-#include "tracer/display_format.h"
+#include "tracer/display_exr.h"
 
-#include <Imath/half.h>
-#include <OpenEXR/ImfChannelList.h>
-#include <OpenEXR/ImfFrameBuffer.h>
-#include <OpenEXR/ImfHeader.h>
-#include <OpenEXR/ImfIO.h>
-#include <OpenEXR/ImfMultiPartOutputFile.h>
-#include <OpenEXR/ImfOutputFile.h>
-#include <OpenEXR/ImfOutputPart.h>
-#include <OpenEXR/ImfPartType.h>
-#include <OpenEXR/ImfStandardAttributes.h>
-#include <OpenEXR/ImfStringAttribute.h>
+#include "tracer/display_format.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,25 +17,6 @@ namespace trace {
 namespace {
 
 constexpr int band_rows = 64; // converted and written at once
-
-class ExrStream : public Imf::OStream {
-public:
-    explicit ExrStream(OutputFile& file) : Imf::OStream(file.path().c_str()), file_(file) {}
-    void write(const char bytes[], int count) override {
-        if (!file_.write(bytes, static_cast<std::size_t>(count))) {
-            throw std::runtime_error("write failed");
-        }
-    }
-    std::uint64_t tellp() override { return file_.position(); }
-    void seekp(std::uint64_t position) override {
-        if (!file_.seek(position)) {
-            throw std::runtime_error("seek failed");
-        }
-    }
-
-private:
-    OutputFile& file_;
-};
 
 struct ExrCompression {
     const char* name;

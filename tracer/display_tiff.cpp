@@ -2,14 +2,14 @@
 // TIFF 6.0 through libtiff: 8, 16 and 32 bit integers and floats, premultiplied alpha, depth as an
 // extra sample. The place of a crop is recorded as Photoshop and others do (XPosition, YPosition),
 // and in Pixar's tags with the camera.
+#include "tracer/display_tiff.h"
+
 #include "tracer/display_format.h"
 
 #include <algorithm>
 #include <cstdarg>
 #include <cstdint>
 #include <cstdio>
-#include <memory>
-#include <tiffio.h>
 
 namespace trace {
 
@@ -71,16 +71,17 @@ int on_warning(TIFF*, void*, const char*, const char*, va_list) {
     return 1;
 }
 
-struct TiffCloser {
-    void operator()(TIFF* t) const { TIFFClose(t); }
-};
-using TiffHandle = std::unique_ptr<TIFF, TiffCloser>;
-
 struct OptionsFree {
     void operator()(TIFFOpenOptions* o) const { TIFFOpenOptionsFree(o); }
 };
 
-TiffHandle open_tiff(OutputFile& file, std::string& error) {
+} // namespace
+
+void TiffCloser::operator()(TIFF* t) const {
+    TIFFClose(t);
+}
+
+TiffHandle open_tiff_output(OutputFile& file, std::string& error) {
     const std::unique_ptr<TIFFOpenOptions, OptionsFree> options(TIFFOpenOptionsAlloc());
     TIFFOpenOptionsSetErrorHandlerExtR(options.get(), on_error, &error);
     TIFFOpenOptionsSetWarningHandlerExtR(options.get(), on_warning, nullptr);
@@ -88,6 +89,28 @@ TiffHandle open_tiff(OutputFile& file, std::string& error) {
                                         on_seek, on_close, on_size, nullptr, nullptr,
                                         options.get()));
 }
+
+TiffHandle open_tiff_input(const std::string& path, std::string& error) {
+    const std::unique_ptr<TIFFOpenOptions, OptionsFree> options(TIFFOpenOptionsAlloc());
+    TIFFOpenOptionsSetErrorHandlerExtR(options.get(), on_error, &error);
+    TIFFOpenOptionsSetWarningHandlerExtR(options.get(), on_warning, nullptr);
+    return TiffHandle(TIFFOpenExt(path.c_str(), "r", options.get()));
+}
+
+void set_tiff_size(TIFF* t, const PixelRange& pixels, std::size_t row_bytes) {
+    const std::size_t rows =
+        std::max<std::size_t>(1, strip_bytes / std::max<std::size_t>(row_bytes, 1));
+    TIFFSetField(t, TIFFTAG_IMAGEWIDTH, static_cast<std::uint32_t>(pixels.width()));
+    TIFFSetField(t, TIFFTAG_IMAGELENGTH, static_cast<std::uint32_t>(pixels.height()));
+    TIFFSetField(t, TIFFTAG_ROWSPERSTRIP, static_cast<std::uint32_t>(rows));
+}
+
+void set_tiff_position(TIFF* t, const PixelRange& pixels, const float resolution[2]) {
+    TIFFSetField(t, TIFFTAG_XPOSITION, static_cast<float>(pixels.x0) / resolution[0]);
+    TIFFSetField(t, TIFFTAG_YPOSITION, static_cast<float>(pixels.y0) / resolution[1]);
+}
+
+namespace {
 
 // --- tags
 
@@ -99,8 +122,6 @@ std::uint16_t sample_format(Storage storage) {
 
 void set_layout(TIFF* t, const FilePicture& p) {
     const bool rgb = p.count(ChannelRole::Color) == 3;
-    TIFFSetField(t, TIFFTAG_IMAGEWIDTH, static_cast<std::uint32_t>(p.width()));
-    TIFFSetField(t, TIFFTAG_IMAGELENGTH, static_cast<std::uint32_t>(p.height()));
     TIFFSetField(t, TIFFTAG_SAMPLESPERPIXEL, static_cast<std::uint16_t>(p.channels.size()));
     TIFFSetField(t, TIFFTAG_BITSPERSAMPLE,
                  static_cast<std::uint16_t>(8 * storage_bytes(p.storage)));
@@ -117,9 +138,7 @@ void set_layout(TIFF* t, const FilePicture& p) {
         TIFFSetField(t, TIFFTAG_EXTRASAMPLES, static_cast<std::uint16_t>(extra.size()),
                      extra.data());
     }
-    const std::size_t rows =
-        std::max<std::size_t>(1, strip_bytes / std::max<std::size_t>(p.row_bytes(), 1));
-    TIFFSetField(t, TIFFTAG_ROWSPERSTRIP, static_cast<std::uint32_t>(rows));
+    set_tiff_size(t, p.pixels, p.row_bytes());
 }
 
 // Returns a note when the name is not known.
@@ -158,8 +177,7 @@ void set_place(TIFF* t, const FilePicture& p) {
     TIFFSetField(t, TIFFTAG_XRESOLUTION, p.resolution[0]);
     TIFFSetField(t, TIFFTAG_YRESOLUTION, p.resolution[1]);
     TIFFSetField(t, TIFFTAG_RESOLUTIONUNIT, p.resolution_in_cm ? RESUNIT_CENTIMETER : RESUNIT_INCH);
-    TIFFSetField(t, TIFFTAG_XPOSITION, static_cast<float>(p.pixels.x0) / p.resolution[0]);
-    TIFFSetField(t, TIFFTAG_YPOSITION, static_cast<float>(p.pixels.y0) / p.resolution[1]);
+    set_tiff_position(t, p.pixels, p.resolution);
     TIFFSetField(t, TIFFTAG_PIXAR_IMAGEFULLWIDTH, static_cast<std::uint32_t>(info.xres));
     TIFFSetField(t, TIFFTAG_PIXAR_IMAGEFULLLENGTH, static_cast<std::uint32_t>(info.yres));
     set_matrix(t, TIFFTAG_PIXAR_MATRIX_WORLDTOCAMERA, info.camera_from_world);
@@ -170,7 +188,7 @@ void set_place(TIFF* t, const FilePicture& p) {
 
 WriteOutcome write_tiff(const FilePicture& picture, OutputFile& file) {
     WriteOutcome outcome;
-    TiffHandle tiff = open_tiff(file, outcome.error);
+    TiffHandle tiff = open_tiff_output(file, outcome.error);
     if (!tiff) {
         outcome.ok = false;
         return outcome;

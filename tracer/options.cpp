@@ -258,6 +258,9 @@ private:
         case Id::safe:
             o.safe = true;
             break;
+        case Id::merge:
+            o.merge = true;
+            break;
         case Id::resume:
             o.checkpoint.resume = true;
             break;

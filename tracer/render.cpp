@@ -12,6 +12,7 @@
 #include "slc/driver.h"
 #include "tracer/display.h"
 #include "tracer/live_display.h"
+#include "tracer/merge.h"
 #include "tracer/options.h"
 #include "tracer/renderer.h"
 #include "tracer/version.h"
@@ -57,6 +58,9 @@ std::vector<std::string> default_shader_path() {
     path.insert(path.begin(), ".");
     const std::vector<std::string> installed = installed_shaders();
     path.insert(path.end(), installed.begin(), installed.end());
+    for (const std::string& home : directories_from("BMRTHOME")) { // of the user's old installation
+        path.push_back(home + "/shaders");
+    }
     return path;
 }
 
@@ -109,6 +113,7 @@ rib::Config reader_config(const trace::RenderOptions& options, base::Diag& diag)
     config.default_paths["procedural"] = directories_from("PROCEDURALS");
     config.default_paths["display"] = directories_from("DISPLAYS");
     config.allow_programs = options.allow_programs;
+    config.interrupted = base::is_interrupted;
     config.defaults = rib_defaults(options);
     config.override_options = [&options, &diag](rib::Options& o) {
         override_options(options, o);
@@ -218,39 +223,43 @@ std::string default_output(const std::string& file) {
 
 // --- the run
 
-// RIB that comes before the files: ~/.rendribrc, then -option.
-rib::ReadStatus read_preludes(rib::Reader& reader, const trace::RenderOptions& options) {
-    if (const char* home = std::getenv("HOME")) {
-        const std::string path = std::string(home) + "/.rendribrc";
-        if (access(path.c_str(), R_OK) == 0) {
-            const rib::ReadStatus status = reader.read_file(path);
-            if (status != rib::ReadStatus::Ok) {
-                return status;
-            }
+// RIB that comes before the files (bmrt.md): the user's ~/.rendribrc, else the site's
+// $BMRTHOME/.rendribrc; then -option.
+std::string preferences_file() {
+    for (const char* variable : {"HOME", "BMRTHOME"}) {
+        const char* directory = std::getenv(variable);
+        std::string path = directory != nullptr ? std::string(directory) + "/.rendribrc" : "";
+        if (directory != nullptr && access(path.c_str(), F_OK) == 0) {
+            return path;
         }
     }
-    for (const std::string& text : options.rib_texts) {
-        const rib::ReadStatus status = reader.read_text(text, "-option");
-        if (status != rib::ReadStatus::Ok) {
-            return status;
-        }
-    }
-    return rib::ReadStatus::Ok;
+    return "";
 }
 
+rib::ReadStatus read_preludes(rib::Reader& reader, const trace::RenderOptions& options) {
+    const std::string preferences = preferences_file();
+    rib::ReadStatus worst =
+        preferences.empty() ? rib::ReadStatus::Ok : reader.read_file(preferences);
+    for (const std::string& text : options.rib_texts) {
+        worst = std::max(worst, reader.read_text(text, "-option"));
+    }
+    return worst;
+}
+
+// One rendering context for all files, as if they were one; but a file that fails does not stop the
+// next.
 rib::ReadStatus read_all(rib::Reader& reader, trace::Renderer& renderer,
                          const trace::RenderOptions& options, base::Diag& diag) {
     rib::ReadStatus worst = read_preludes(reader, options);
     for (const std::string& file : options.files) {
-        if (worst == rib::ReadStatus::Stopped || base::is_interrupted()) {
+        if (base::is_interrupted()) {
             break;
         }
         if (options.verbose) {
             diag.report(base::Severity::Info, base::Code::None, {}, "reading " + file);
         }
         renderer.set_file(file, default_output(file));
-        const rib::ReadStatus status = file == "-" ? reader.read_stdin() : reader.read_file(file);
-        worst = status == rib::ReadStatus::Ok ? worst : status;
+        worst = std::max(worst, file == "-" ? reader.read_stdin() : reader.read_file(file));
     }
     return worst;
 }
@@ -285,13 +294,40 @@ bool report_run(const trace::RenderOptions& options, const trace::RunRecord& run
     return ok;
 }
 
+// Errors whose code names the machine and not the input: no compiler, no memory, a full disk.
+bool environment_failed(const base::Diag& diag) {
+    const std::vector<base::MessageRecord> records = diag.records();
+    return std::ranges::any_of(records, [](const base::MessageRecord& record) {
+        return record.severity >= base::Severity::Error &&
+               (record.code == base::Code::System || record.code == base::Code::NoMem ||
+                record.code == base::Code::DiskFull);
+    });
+}
+
 int exit_code(rib::ReadStatus status, const trace::Renderer& renderer,
               const trace::RenderOptions& options, const base::Diag& diag) {
-    if (status == rib::ReadStatus::Environment || renderer.result() == trace::FrameResult::Failed) {
+    if (status == rib::ReadStatus::Environment || renderer.result() == trace::FrameResult::Failed ||
+        environment_failed(diag)) {
         return exit_environment;
     }
     const bool strict_failure = options.strict && diag.count(base::Severity::Warning) > 0;
     return diag.had_errors() || strict_failure ? exit_input : exit_done;
+}
+
+int merge(const trace::RenderOptions& options) {
+    base::Diag diag;
+    if (options.silent) {
+        diag.set_threshold(base::Severity::Error);
+    }
+    switch (trace::merge_tiles(options.output, options.files, options.crop, diag)) {
+    case trace::MergeResult::Written:
+        return exit_done;
+    case trace::MergeResult::BadTiles:
+        return exit_input;
+    case trace::MergeResult::Failed:
+        break;
+    }
+    return exit_environment;
 }
 
 int run(const trace::RenderOptions& options, const std::vector<const char*>& arguments) {
@@ -300,7 +336,6 @@ int run(const trace::RenderOptions& options, const std::vector<const char*>& arg
         diag.set_threshold(base::Severity::Error);
     }
     report_later_switches(options, diag);
-    base::catch_interrupts();
     trace::LiveDisplay live(live_settings(options, diag), diag);
     if (options.show) {
         live.start(); // early: the address can be opened while the scene is read
@@ -310,30 +345,43 @@ int run(const trace::RenderOptions& options, const std::vector<const char*>& arg
     trace::Renderer renderer(std::move(config), diag);
     rib::Reader reader(renderer, diag, reader_config(options, diag));
     const rib::ReadStatus status = read_all(reader, renderer, options, diag);
-    if (base::is_interrupted()) {
-        live.finish(base::is_interrupted); // pages are told
-    }
+    const bool stopped = base::is_interrupted();
     renderer.stop();
-    base::finish_interrupt();
     trace::RunRecord& record = renderer.finish();
     record.arguments.assign(arguments.begin(), arguments.end());
     const bool reported = report_run(options, record, diag);
-    live.finish(base::is_interrupted); // Ctrl-C ends the showing only: the work is done
+    live.finish(base::is_interrupted); // pages are told; Ctrl-C now ends the showing only
+    if (stopped) {
+        base::finish_interrupt();
+    }
     return reported ? exit_code(status, renderer, options, diag) : exit_environment;
+}
+
+// What one switch cannot tell: nothing to read means standard input, unless a user sits there.
+void complete(trace::ParsedOptions& parsed) {
+    trace::RenderOptions& options = parsed.options;
+    if (!parsed.error.empty()) {
+        return;
+    }
+    if (options.merge && (options.output.empty() || options.files.empty())) {
+        parsed.error = "--merge needs -o FILE and the tiles";
+    } else if (options.files.empty()) {
+        if (isatty(STDIN_FILENO) != 0) {
+            parsed.error = "no RIB file";
+        }
+        options.files.emplace_back("-");
+    }
 }
 
 } // namespace
 
 int main(int argc, char** argv) {
+    base::open_standard_streams();
+    base::catch_interrupts();
     const std::string program = argc > 0 ? fs::path(argv[0]).filename().string() : "render";
     const std::vector<const char*> arguments(argv + (argc > 0 ? 1 : 0), argv + argc);
     trace::ParsedOptions parsed = trace::parse_options(arguments);
-    if (parsed.error.empty() && parsed.options.files.empty()) {
-        if (isatty(STDIN_FILENO) != 0) {
-            parsed.error = "no RIB file";
-        }
-        parsed.options.files.emplace_back("-");
-    }
+    complete(parsed);
     if (parsed.options.help) {
         std::fputs(trace::usage_text(program).c_str(), stdout);
         return exit_done;
@@ -347,5 +395,5 @@ int main(int argc, char** argv) {
                      trace::usage_text(program).c_str());
         return exit_usage;
     }
-    return run(parsed.options, arguments);
+    return parsed.options.merge ? merge(parsed.options) : run(parsed.options, arguments);
 }

@@ -9,60 +9,12 @@ import json
 import os
 import signal
 import subprocess
-import sys
-import tempfile
 import time
-import unittest
 
-RENDER = os.path.abspath(sys.argv.pop(1))
-
-SCENE = """
-Format {size} {size} 1
-PixelSamples {samples} {samples}
-Display "{name}" "file" "rgba"
-Projection "perspective" "fov" [40]
-WorldBegin
-  Translate 0 0 5
-  Color [1 .5 .2] Sphere 1 -1 1 360
-  Translate .5 .5 -1 Opacity [.5 .5 .5] Sphere .5 -.5 .5 360
-WorldEnd
-"""
+from render_program import RenderCase, main
 
 
-class Render(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.environment = dict(os.environ, HOME=self.folder.name)
-
-    def tearDown(self):
-        self.folder.cleanup()
-
-    def path(self, name):
-        return os.path.join(self.folder.name, name)
-
-    def write(self, name, text):
-        with open(self.path(name), "w", encoding="utf-8") as file:
-            file.write(text)
-
-    def start(self, *arguments, **options):
-        return subprocess.Popen([RENDER, *arguments], cwd=self.folder.name, env=self.environment,
-                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options)
-
-    def run_render(self, *arguments, text=None):
-        process = self.start(*arguments, stdin=subprocess.PIPE)
-        output, messages = process.communicate(text, timeout=100)
-        return process.returncode, output, messages
-
-    def files(self):
-        return sorted(name for name in os.listdir(self.folder.name) if not name.startswith(".cache"))
-
-    def scene(self, name="a.tif", size=40, samples=2):
-        return SCENE.format(name=name, size=size, samples=samples)
-
-    def bytes_of(self, name):
-        with open(self.path(name), "rb") as file:
-            return file.read()
-
+class Render(RenderCase):
     def test_exit_codes(self):
         self.write("good.rib", self.scene())
         self.assertEqual(self.run_render("good.rib")[0], 0)
@@ -91,7 +43,7 @@ class Render(unittest.TestCase):
         for name, loads in (("a.exr", False), ("a.tif", False), ("a.png", False), ("a.jpg", True)):
             self.write("scene.rib", self.scene(name))
             environment = dict(self.environment, LD_DEBUG="files")
-            process = subprocess.run([RENDER, "scene.rib"], cwd=self.folder.name, env=environment, timeout=100,
+            process = subprocess.run([self.program, "scene.rib"], cwd=self.folder.name, env=environment, timeout=100,
                                      capture_output=True, text=True, check=False)
             self.assertEqual(process.returncode, 0)
             if not loads:
@@ -212,4 +164,4 @@ class Render(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(verbosity=0)
+    main()

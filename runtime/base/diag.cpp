@@ -233,6 +233,11 @@ void Diag::set_handler(ErrorHandler handler) {
     handler_ = handler;
 }
 
+void Diag::clear_abort() {
+    const std::lock_guard lock(mutex_);
+    abort_ = false;
+}
+
 bool Diag::abort_requested() const {
     const std::lock_guard lock(mutex_);
     return abort_;

@@ -93,6 +93,7 @@ public:
     void set_handler(ErrorHandler handler);
     // True after an error arrived while the handler is Abort: the caller winds the run down.
     [[nodiscard]] bool abort_requested() const;
+    void clear_abort(); // the next stream is another matter
     // Messages below this severity are dropped (-silent), but still counted.
     void set_threshold(Severity lowest);
 

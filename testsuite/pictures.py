@@ -28,8 +28,11 @@ class Picture:
         self.kinds = {}  # OpenEXR: "e" half, "f" float, by the name of the channel in the file
 
     def layer(self, name):
-        """The channels whose names are `name` or begin with `name.`, as a picture."""
-        chosen = [i for i, c in enumerate(self.channels) if c == name or c.startswith(name + ".")]
+        """The channels whose names are `name` or begin with `name.`, as a picture: R G B, X Y Z W, numbers in order."""
+        def place(i):
+            return [int(part) if part.isdigit() else "RGBXYZWST".find(part)
+                    for part in self.channels[i][len(name) + 1:].split(".")]
+        chosen = sorted((i for i, c in enumerate(self.channels) if c == name or c.startswith(name + ".")), key=place)
         if not chosen:
             raise PictureError(f"no channel {name} among {', '.join(self.channels)}")
         n = len(self.channels)
@@ -434,6 +437,7 @@ def read_map(data):
     channels = ["r", "g", "b"] if data[:2] == b"P6" else ["y"]
     row = width * len(channels)
     code = f">{row}{'H' if levels > 255 else 'B'}"
-    rows = [[v / levels for v in struct.unpack_from(code, data, offset + 1 + y * struct.calcsize(code))]
+    scale = 1.0 / levels
+    rows = [[v * scale for v in struct.unpack_from(code, data, offset + 1 + y * struct.calcsize(code))]
             for y in range(height)]
     return Picture(width, height, channels, rows, levels)

@@ -90,7 +90,7 @@ void Gather::add_row(const SampleBuffer& buffer, int y, int x0, int x1) {
     const PixelHash hash(y);
     for (int x = x0; x < x1; ++x, ++to, first += per_pixel_) {
         *to = {buffer.samples.data() + first, buffer.extra.data() + first * channels,
-               sampler_.pattern(hash(x))};
+               sampler_.pattern(hash(x)) * reach_.near.size()};
     }
 }
 

@@ -29,7 +29,7 @@ private:
     struct Source {
         const Sample* samples = nullptr;
         const float* extra = nullptr;
-        std::size_t pattern = 0; // of the sampler
+        std::size_t slot = 0; // in the weights of reach_: pattern of the sampler times neighbours
     };
     // A filter and where the pixels in its reach lie: offsets in sources_, row by row.
     struct Reach {
@@ -56,7 +56,10 @@ private:
     [[nodiscard]] float depth(const Source& own) const;
     // Extra channels: gather_extra.cpp. out: a value per channel of the run.
     void extra_values(const Source* own, const Run& run, float* out) const;
-    void means(const Source* own, const Run& run, bool plain, float* out) const;
+    void means(const Source* own, const Run& run, float* out) const;
+    template <class Clean> // of each value. False: a mean is not finite
+    [[nodiscard]] bool try_means(const Source* own, const Run& run, bool plain, float* out,
+                                 const Clean& clean) const;
     void covered_means(const Source* own, const Run& run, float* out) const;
     void extremes(const Source* own, const Run& run, float* out) const;
     void outermost(const Source* own, const Run& run, float* out) const;
@@ -78,7 +81,9 @@ void Gather::for_samples(const Source* own, const Reach& reach, const Body& body
     const std::size_t num_near = reach.near.size();
     for (std::size_t k = 0; k < num_near; ++k) {
         const Source& source = own[reach.near[k]];
-        const std::size_t slot = source.pattern * num_near + k;
+        const std::size_t first =
+            &reach == &reach_ ? source.slot : source.slot / reach_.near.size() * num_near;
+        const std::size_t slot = first + k;
         const FilterWeights::Span span = weights.span(slot);
         const float* w = weights.weights(slot);
         for (std::size_t s = span.first; s < span.last; ++s) {

@@ -40,7 +40,7 @@ void Gather::make_runs() {
 void Gather::extra_values(const Source* own, const Run& run, float* out) const {
     switch (run.how.combine) {
     case Combine::Mean:
-        means(own, run, false, out);
+        means(own, run, out);
         return;
     case Combine::CoveredMean:
         covered_means(own, run, out);
@@ -56,15 +56,24 @@ void Gather::extra_values(const Source* own, const Run& run, float* out) const {
     }
 }
 
+// As it comes first: sums that are not finite are added up once more with care.
+void Gather::means(const Source* own, const Run& run, float* out) const {
+    if (!try_means(own, run, false, out, [](float value) { return value; })) {
+        static_cast<void>(try_means(own, run, false, out, finite_or_zero));
+    }
+}
+
 // plain: the mean of the own samples, as for colour where the weights say nothing.
-void Gather::means(const Source* own, const Run& run, bool plain, float* out) const {
+template <class Clean>
+bool Gather::try_means(const Source* own, const Run& run, bool plain, float* out,
+                       const Clean& clean) const {
     const std::size_t stride = extra_.size();
     std::fill_n(out, run.count, 0.0f);
     float total = 0;
     const auto add = [&](const Source& source, std::size_t s, float weight) {
         const float* values = source.extra + s * stride + run.first;
         for (std::size_t c = 0; c < run.count; ++c) {
-            out[c] += weight * finite_or_zero(values[c]);
+            out[c] += weight * clean(values[c]);
         }
         total += weight;
     };
@@ -75,13 +84,15 @@ void Gather::means(const Source* own, const Run& run, bool plain, float* out) co
     } else {
         for_samples(own, run.reach, add);
         if (!(total >= run.reach.weights->least_sum())) {
-            means(own, run, true, out);
-            return;
+            return try_means(own, run, true, out, clean);
         }
     }
+    float bad = 0; // x - x is 0 for every finite x
     for (std::size_t c = 0; c < run.count; ++c) {
         out[c] /= total;
+        bad += out[c] - out[c];
     }
+    return bad == 0;
 }
 
 void Gather::covered_means(const Source* own, const Run& run, float* out) const {

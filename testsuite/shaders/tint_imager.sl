@@ -3,7 +3,7 @@
 imager tint_imager(float pick = 0;)
 {
     if (pick == 0) {
-        Ci = color(.25, Ci[1], 0);
+        Ci = color(.25, comp(Ci, 1), 0);
         Oi = color(1, 1, 1);
         alpha = .5;
     } else if (pick == 1) {

@@ -3,7 +3,6 @@
 #include "ribtools/rib_lex.h"
 #include "ribtools/test_util.h"
 
-#include <cfloat>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
@@ -238,16 +237,18 @@ TEST(Binary, MistakesAreNamedWithTheirByte) {
     }
 }
 
-TEST(Binary, NumbersThatAreNotFinite) {
+TEST(Binary, NumbersThatAreNotFiniteCostTheRequest) {
     const Reading r(world(bytes("'Polygon \"P\"' c8 09 7f c0 00 00 7f 80 00 00 ff 80 00 00 "
                                 "00 00 00 00 00 00 00 00 00 00 00 00 3f 80 00 00 3f 80 00 00 "
-                                "00 00 00 00")));
-    EXPECT_TRUE(r.said("Polygon: 3 numbers that are not finite")) << r.said();
+                                "00 00 00 00 'Sphere 1 -1 1 360'")));
+    EXPECT_TRUE(r.said("Polygon: 3 numbers that are not finite; request skipped")) << r.said();
     EXPECT_EQ(r.messages.size(), 1u);
-    const std::vector<float>& p = r.scene().primitives[0].params.params[0].floats;
-    EXPECT_EQ(p[0], 0);
-    EXPECT_EQ(p[1], FLT_MAX);
-    EXPECT_EQ(p[2], -FLT_MAX);
+    EXPECT_EQ(r.scene().primitives.size(), 1u);
+    // A block is opened all the same, with numbers that RIB text can hold.
+    const Reading motion(bytes("'MotionBegin' c8 02 7f c0 00 00 7f 80 00 00 "
+                               "'Translate 0 0 1 Translate 0 0 2 MotionEnd'"));
+    EXPECT_TRUE(motion.said("NaN is read as 0, infinity as the largest number")) << motion.said();
+    EXPECT_EQ(motion.messages.size(), 1u) << motion.said();
 }
 
 // The codes of a stream hold in what it records, even when they change afterwards.

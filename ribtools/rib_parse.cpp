@@ -138,10 +138,14 @@ bool Parser::next(Request& request) {
         request.id = id ? *id : RequestId::Unknown;
         request.pos = token().pos;
         const bool is_known = id && row(*id).kind != RequestKind::Skipped;
-        const Outcome outcome = is_known                   ? parse(request, row(*id))
-                                : mode_ == ParseMode::Keep ? keep_loose(request)
-                                                           : skip_request(id);
-        note_not_finite();
+        Outcome outcome = is_known                   ? parse(request, row(*id))
+                          : mode_ == ParseMode::Keep ? keep_loose(request)
+                                                     : skip_request(id);
+        const bool may_skip =
+            mode_ == ParseMode::Resolve && is_known && row(request.id).effect == BlockEffect::None;
+        if (note_not_finite(may_skip) && may_skip) {
+            outcome = Outcome::Skip;
+        }
         if (outcome == Outcome::Ok) {
             return true;
         }
@@ -175,15 +179,16 @@ std::string Parser::hint_for(const std::string& name) {
     return unknown_hint_.empty() ? "" : " (did you mean " + std::string(unknown_hint_) + "?)";
 }
 
-// Tells of NaN and infinities in the request just read.
-void Parser::note_not_finite() {
+// Tells of NaN and infinities in the request just read; true if there were any.
+bool Parser::note_not_finite(bool skip) {
     const Lexer::NotFinite found = lexer_.take_not_finite();
     if (found.count > 0) {
         error(base::Severity::Error, base::Code::Range, found.pos,
               std::string(request_name_) + ": " + std::to_string(found.count) +
-                  (found.count > 1 ? " numbers that are" : " number that is") +
-                  " not finite; NaN is read as 0, infinity as the largest number");
+                  (found.count > 1 ? " numbers that are" : " number that is") + " not finite; " +
+                  (skip ? "request skipped" : "NaN is read as 0, infinity as the largest number"));
     }
+    return found.count > 0;
 }
 
 Parser::Outcome Parser::parse(Request& request, const RequestRow& table_row) {

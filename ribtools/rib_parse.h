@@ -99,7 +99,7 @@ private:
     bool read_value(Param& param, bool guess);
     bool read_array_value(Param& param, bool guess);
     bool read_bare_value(Param& param, bool guess);
-    void note_not_finite();
+    bool note_not_finite(bool skip);
     void note_int_trouble(const Lexer::IntTrouble& trouble, std::string_view what);
     bool check_value(Param& param, const RequestRow& row);
     void skip_value();

@@ -441,6 +441,11 @@ TEST(Write, OtherNumbersThanFiniteOnesAreReplaced) {
     EXPECT_EQ(writer.num_not_finite(), 3u);
 }
 
+TEST(Write, OtherNumbersThanFiniteOnesAreReplacedWhenRead) {
+    EXPECT_EQ(to_text("Polygon \"P\" \xc8\x02\x7f\xc0\x01\x01\xff\x80" + std::string(2, '\0')),
+              "Polygon \"P\" [0 -3.4028235e+38]\n");
+}
+
 TEST(Write, StringsKeepEveryByte) {
     std::string text = "Option \"a\" \"string s\" [\"";
     for (int i = 1; i < 256; ++i) {

@@ -114,8 +114,7 @@ bool Diag::report_few(std::string_view key, std::uint64_t most, Severity severit
         keep({}, severity, code, pos, text);
         return true;
     }
-    const std::string file = file_name(pos.file_id);
-    const std::string place = place_text(file, pos);
+    const std::string place = place_text(file_name(pos.file_id), pos);
     const std::lock_guard lock(mutex_);
     record(severity, code, place, text);
     auto it = repeated_index_.find(std::string(key));
@@ -125,7 +124,7 @@ bool Diag::report_few(std::string_view key, std::uint64_t most, Severity severit
             return true;
         }
         it = repeated_index_.emplace(key, repeated_.size()).first;
-        repeated_.push_back({severity, file, std::string(text), 0, 0});
+        repeated_.push_back({severity, {}, std::string(text), 0, 0});
     }
     Repeated& repeated = repeated_[it->second];
     if (repeated.num_said < most) {
@@ -134,6 +133,7 @@ bool Diag::report_few(std::string_view key, std::uint64_t most, Severity severit
         return true;
     }
     ++repeated.num_quiet;
+    repeated.last_place = place;
     note(severity, code);
     return false;
 }
@@ -142,7 +142,8 @@ void Diag::tell_repeated() {
     const std::lock_guard lock(mutex_);
     for (Repeated& r : repeated_) {
         if (r.num_quiet > 0) {
-            print(r.severity, r.file, std::to_string(r.num_quiet) + " more like this: " + r.text);
+            print(r.severity, r.last_place,
+                  std::to_string(r.num_quiet) + " more like this up to here: " + r.text);
             r.num_quiet = 0;
         }
     }

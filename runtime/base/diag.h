@@ -117,7 +117,7 @@ private:
 
     struct Repeated {
         Severity severity;
-        std::string file, text; // of the first
+        std::string last_place, text; // of the last that was kept quiet; of the first
         std::uint64_t num_said, num_quiet;
     };
 

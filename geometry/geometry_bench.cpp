@@ -45,23 +45,6 @@ std::vector<double> seconds(const std::vector<Work>& works) {
     return best;
 }
 
-// A wavy surface in front of the eye.
-void make_mesh(std::vector<float>& xyz, std::vector<std::int32_t>& index) {
-    for (int j = 0; j < grid; ++j) {
-        for (int i = 0; i < grid; ++i) {
-            const double x = 12.0 * i / (grid - 1) - 6, y = 12.0 * j / (grid - 1) - 6;
-            xyz.insert(xyz.end(),
-                       {float(x), float(y), float(6 + 0.7 * std::sin(3 * x) * std::cos(2 * y))});
-        }
-    }
-    for (int j = 0; j + 1 < grid; ++j) {
-        for (int i = 0; i + 1 < grid; ++i) {
-            const int a = j * grid + i, b = a + 1, c = a + grid, d = c + 1;
-            index.insert(index.end(), {a, b, d, a, d, c});
-        }
-    }
-}
-
 RTCScene raw_scene(RTCDevice device, std::vector<float>& xyz,
                    const std::vector<std::int32_t>& index) {
     xyz.resize(xyz.size() + 4);
@@ -229,7 +212,7 @@ int main() {
     SceneBuilder b;
     std::vector<float> xyz;
     std::vector<std::int32_t> index;
-    make_mesh(xyz, index);
+    wavy_grid(grid, xyz, index);
     const std::size_t triangles = index.size() / 3;
     b.add(SceneBuilder::polygons(std::vector<std::int32_t>(triangles, 1),
                                  std::vector<std::int32_t>(triangles, 3), index, xyz));

@@ -184,22 +184,6 @@ struct RawEmbree {
     }
 };
 
-void wavy_grid(int n, std::vector<float>& xyz, std::vector<std::int32_t>& index) {
-    for (int j = 0; j < n; ++j) {
-        for (int i = 0; i < n; ++i) {
-            const double x = 12.0 * i / (n - 1) - 6, y = 12.0 * j / (n - 1) - 6;
-            xyz.insert(xyz.end(),
-                       {float(x), float(y), float(6 + 0.7 * std::sin(3 * x) * std::cos(2 * y))});
-        }
-    }
-    for (int j = 0; j + 1 < n; ++j) {
-        for (int i = 0; i + 1 < n; ++i) {
-            const int a = j * n + i, b = a + 1, c = a + n, d = c + 1;
-            index.insert(index.end(), {a, b, d, a, d, c});
-        }
-    }
-}
-
 void triangles() {
     constexpr int n = 1582; // 2 * 1581^2 = 4,999,122
     std::vector<float> xyz;

@@ -6,6 +6,8 @@
 #include "geometry/world.h"
 
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <string>
@@ -153,5 +155,22 @@ private:
     std::vector<float> data_[3][SL_VAR_COUNT];
     sl_points points_[3];
 };
+
+// A wavy surface in front of the eye, of n * n vertices in two triangles a cell; appended.
+inline void wavy_grid(int n, std::vector<float>& xyz, std::vector<std::int32_t>& index) {
+    for (int j = 0; j < n; ++j) {
+        for (int i = 0; i < n; ++i) {
+            const double x = 12.0 * i / (n - 1) - 6, y = 12.0 * j / (n - 1) - 6;
+            xyz.insert(xyz.end(),
+                       {float(x), float(y), float(6 + 0.7 * std::sin(3 * x) * std::cos(2 * y))});
+        }
+    }
+    for (int j = 0; j + 1 < n; ++j) {
+        for (int i = 0; i + 1 < n; ++i) {
+            const int a = j * n + i, b = a + 1, c = a + n, d = c + 1;
+            index.insert(index.end(), {a, b, d, a, d, c});
+        }
+    }
+}
 
 } // namespace geo::test

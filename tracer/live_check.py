@@ -15,32 +15,14 @@ import socket
 import struct
 import subprocess
 import sys
-import tempfile
 import threading
-import unittest
 import urllib.parse
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "testsuite"))
 import pictures  # noqa: E402
+from render_program import RenderCase, main  # noqa: E402
 
-RENDER = os.path.abspath(sys.argv.pop(1))
 TIMEOUT_S = 100  # for what should take a second: the machine may be busy
-
-SCENE = """
-Format {size} {size} 1
-PixelSamples {samples} {samples}
-Display "{name}" "{type}" "{mode}"
-Projection "perspective" "fov" [40]
-WorldBegin
-  Translate 0 0 5
-  Color [1 .5 .2] Sphere 1 -1 1 360
-  Translate .5 .5 -1 Opacity [.5 .5 .5] Sphere .5 -.5 .5 360
-WorldEnd
-"""
-
-
-def scene(name="a.tif", kind="file", mode="rgb", size=64, samples=2):
-    return SCENE.format(name=name, type=kind, mode=mode, size=size, samples=samples)
 
 
 class Page:
@@ -130,11 +112,9 @@ class Tev(threading.Thread):
             assert len(packet) == 16 * width * height
 
 
-class Live(unittest.TestCase):
+class Live(RenderCase):
     def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.environment = {key: value for key, value in os.environ.items() if key != "PERIGEE_DISPLAY"}
-        self.environment["HOME"] = self.folder.name
+        super().setUp()
         self.processes = []
 
     def tearDown(self):
@@ -145,21 +125,15 @@ class Live(unittest.TestCase):
             for stream in (process.stdout, process.stderr):
                 if stream:
                     stream.close()
-        self.folder.cleanup()
-
-    def path(self, name):
-        return os.path.join(self.folder.name, name)
-
-    def write(self, name, text):
-        with open(self.path(name), "w", encoding="utf-8") as file:
-            file.write(text)
+        super().tearDown()
 
     def start(self, *arguments, **options):
-        options.setdefault("stderr", subprocess.PIPE)
-        process = subprocess.Popen([RENDER, *arguments], cwd=self.folder.name, env=self.environment, text=True,
-                                   stdin=subprocess.DEVNULL, **options)
+        process = super().start(*arguments, **{"stdin": subprocess.DEVNULL, "stdout": None, **options})
         self.processes.append(process)
         return process
+
+    def scene(self, name="a.tif", kind="file", mode="rgb", size=64, samples=2):
+        return super().scene(name, size, samples, mode, kind)
 
     def url(self, stream):
         while line := stream.readline():
@@ -174,7 +148,7 @@ class Live(unittest.TestCase):
         return messages
 
     def test_page_while_it_renders(self):
-        self.write("s.rib", scene(size=200, samples=4))
+        self.write("s.rib", self.scene(size=200, samples=4))
         process = self.start("-d", "8", "--display-server", "web", "-t", "1", "s.rib")
         page = Page(self.url(process.stderr))
         status, html = page.get("")
@@ -200,19 +174,18 @@ class Live(unittest.TestCase):
     def test_order_of_rows_changes_no_byte(self):
         files = []
         for arguments in ([], ["-d", "4", "-Progress"], ["-d"]):
-            self.write("s.rib", scene())
+            self.write("s.rib", self.scene())
             process = self.start(*arguments, "s.rib")
             messages = self.end(process)
             self.assertEqual("R90000 100%" in messages, "-Progress" in arguments)
-            with open(self.path("a.tif"), "rb") as file:
-                files.append(file.read())
+            files.append(self.bytes_of("a.tif"))
         self.assertEqual(files[0], files[1])
         self.assertEqual(files[0], files[2])
 
     def test_tev_gets_the_picture(self):
         tev = Tev()
         floats = 'Quantize "rgba" 0 0 0 0\n'
-        self.write("s.rib", f"FrameBegin 3\n{floats}{scene('a.tif', mode='rgba')}FrameEnd\n{scene('b.tif')}")
+        self.write("s.rib", f"FrameBegin 3\n{floats}{self.scene('a.tif', mode='rgba')}FrameEnd\n{self.scene('b.tif')}")
         process = self.start("--display-server", f"127.0.0.1:{tev.port}", "-crop", ".25", "1", "0", ".5", "s.rib")
         messages = self.end(process)
         self.assertIn("connected to tev", messages)
@@ -226,19 +199,19 @@ class Live(unittest.TestCase):
             self.assertEqual(rgba, tuple(picture.at(x, y)))
 
     def test_framebuffer_display(self):
-        self.write("s.rib", scene("name.rib", "framebuffer"))
+        self.write("s.rib", self.scene("name.rib", "framebuffer"))
         messages = self.end(self.start("s.rib"))  # no terminal, no -d: nobody could look
         self.assertNotIn("http:", messages)
         self.assertIn("name.rib.tif", messages)
         self.assertTrue(os.path.exists(self.path("name.rib.tif")))
-        self.write("s.rib", scene("window.tif", "framebuffer").replace("Proj", 'Display "+file.tif" "file" "rgb"\nProj'))
+        self.write("s.rib", self.scene("window.tif", "framebuffer").replace("Proj", 'Display "+file.tif" "file" "rgb"\nProj'))
         messages = self.end(self.start("-d", "s.rib"))
         self.assertIn("http:", messages)
         self.assertFalse(os.path.exists(self.path("window.tif")))
         self.assertTrue(os.path.exists(self.path("file.tif")))
 
     def test_choice_by_environment(self):
-        self.write("s.rib", scene())
+        self.write("s.rib", self.scene())
         self.environment["PERIGEE_DISPLAY"] = "none"
         self.assertEqual(self.end(self.start("-d", "s.rib")), "")
         self.environment["PERIGEE_DISPLAY"] = "127.0.0.1:1"
@@ -251,7 +224,7 @@ class Live(unittest.TestCase):
         self.assertEqual(process.wait(TIMEOUT_S), 2)
 
     def test_interrupt_tells_the_page(self):
-        self.write("s.rib", scene(size=2000, samples=16))
+        self.write("s.rib", self.scene(size=2000, samples=16))
         process = self.start("-d", "--display-server", "web", "s.rib")
         page = Page(self.url(process.stderr))
         while not page.levels:
@@ -267,7 +240,7 @@ class Live(unittest.TestCase):
         self.assertEqual(process.wait(TIMEOUT_S), -signal.SIGINT)
 
     def test_stays_on_a_terminal_until_ctrl_c(self):
-        self.write("s.rib", scene())
+        self.write("s.rib", self.scene())
         controller, terminal = pty.openpty()
         process = self.start("-d", "--display-server", "web", "s.rib", stderr=terminal)
         os.close(terminal)
@@ -288,4 +261,4 @@ class Live(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(verbosity=0)
+    main()

@@ -16,7 +16,7 @@ RENDER = os.path.abspath(sys.argv.pop(1))
 SCENE = """
 Format {size} {size} 1
 PixelSamples {samples} {samples}
-Display "{name}" "file" "{mode}"
+Display "{name}" "{kind}" "{mode}"
 Projection "perspective" "fov" [40]
 WorldBegin
   Translate 0 0 5
@@ -32,7 +32,8 @@ class RenderCase(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
         self.environment = dict(os.environ, HOME=self.folder.name)
-        for name in ("SHADERS", "TEXTURES", "ARCHIVES", "PERIGEE_CACHE", "XDG_CACHE_HOME", "BMRTHOME"):
+        for name in ("SHADERS", "TEXTURES", "ARCHIVES", "PERIGEE_CACHE", "XDG_CACHE_HOME", "BMRTHOME",
+                     "PERIGEE_DISPLAY"):
             self.environment.pop(name, None)
 
     def tearDown(self):
@@ -65,8 +66,8 @@ class RenderCase(unittest.TestCase):
     def files(self):
         return sorted(name for name in os.listdir(self.folder.name) if not name.startswith(".cache"))
 
-    def scene(self, name="a.tif", size=40, samples=2, mode="rgba"):
-        return SCENE.format(name=name, size=size, samples=samples, mode=mode)
+    def scene(self, name="a.tif", size=40, samples=2, mode="rgba", kind="file"):
+        return SCENE.format(name=name, size=size, samples=samples, mode=mode, kind=kind)
 
     def bytes_of(self, name):
         with open(self.path(name), "rb") as file:

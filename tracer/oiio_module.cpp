@@ -4,21 +4,19 @@
 // that OpenImageIO writes into memory are; others go through a file in a private directory.
 #include "tracer/oiio_module.h"
 
+#include "runtime/base/temp_dir.h"
+
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include <cstdio>
-#include <cstdlib>
 #include <exception>
-#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace {
-
-namespace fs = std::filesystem;
 
 OIIO::ImageSpec spec_of(const OIIO::ImageOutput& out, const perigee_oiio_picture& p) {
     const OIIO::TypeDesc type = p.bits == 8    ? OIIO::TypeDesc::UINT8
@@ -72,32 +70,10 @@ bool write_to_memory(Writer out, const perigee_oiio_picture& p, std::vector<unsi
     return good;
 }
 
-// A directory of our own that goes with the object.
-class PrivateDirectory {
-public:
-    PrivateDirectory() : path_((fs::temp_directory_path() / "perigee-XXXXXX").string()) {
-        made_ = ::mkdtemp(path_.data()) != nullptr;
-    }
-    ~PrivateDirectory() {
-        std::error_code error;
-        if (made_) {
-            fs::remove_all(path_, error);
-        }
-    }
-    PrivateDirectory(const PrivateDirectory&) = delete;
-    PrivateDirectory& operator=(const PrivateDirectory&) = delete;
-    [[nodiscard]] bool made() const { return made_; }
-    [[nodiscard]] const std::string& path() const { return path_; }
-
-private:
-    std::string path_;
-    bool made_ = false;
-};
-
 bool write_through_file(Writer out, const perigee_oiio_picture& p,
                         std::vector<unsigned char>& bytes, std::string& why) {
-    const PrivateDirectory directory;
-    if (!directory.made()) {
+    const base::TempDir directory("perigee");
+    if (directory.path().empty()) {
         why = "no temporary directory";
         return false;
     }

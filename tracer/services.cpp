@@ -179,6 +179,36 @@ void depth_range(void* engine, float* near_far) {
     near_far[1] = options.far_clip;
 }
 
+// --- maps
+
+// An unreadable map gives the fill value (sl.md 4.7); shadows and flat bump maps give 0.
+void map(void* engine, const sl_map_query* query, float* result) {
+    report_shader(of(engine), base::Severity::Warning, 0,
+                  "maps are not read in this version; the fill value stands for them");
+    const bool fills = query->kind == SL_MAP_texture || query->kind == SL_MAP_environment;
+    for (std::uint32_t lane = 0; lane < query->lanes; ++lane) {
+        for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(query->num_channels); ++k) {
+            result[k * query->lanes + lane] = fills ? query->option[SL_MAP_OPTION_fill][lane] : 0;
+        }
+    }
+}
+
+int32_t map_info(void* /*engine*/, sl_string /*name*/, sl_string /*key*/, int32_t /*type*/,
+                 int32_t /*array_length*/, void* /*value*/) {
+    return 0;
+}
+
+uint32_t bake(void* engine, const sl_point_query* /*query*/) {
+    report_shader(of(engine), base::Severity::Warning, 0, "nothing is baked in this version");
+    return 0;
+}
+
+uint32_t texture3d(void* engine, const sl_point_query* /*query*/) {
+    report_shader(of(engine), base::Severity::Warning, 0,
+                  "texture3d() reads nothing in this version");
+    return 0;
+}
+
 int32_t raylevel(void* engine) {
     return of(engine).ray_level;
 }

@@ -109,6 +109,59 @@ typedef struct sl_light_result {
                  same index; the engine scales Cl so that the sum over samples is the light */
 } sl_light_result;
 
+/* What a map lookup asks for, and the slots of its options. */
+enum {
+    SL_MAP_texture,
+    SL_MAP_environment,
+    SL_MAP_shadow,
+    SL_MAP_bump,      /* result: derivatives by s and t */
+    SL_MAP_occlusion, /* at: point, du: unit normal; the share of a set of shadow maps that is dark
+                       */
+    SL_MAP_irradiance /* at: unit normal; cosine-weighted mean of an environment */
+};
+enum {
+#define SL_MAP_SLOT(name, default, note) SL_MAP_OPTION_##name,
+#include "sl_map_options.def"
+    SL_MAP_OPTIONS
+};
+
+/* One lookup for the points of one packet. at, du and dv are planes of `lanes`: s and t for
+ * textures and bump maps, else three components. du and dv are the differences to the auxiliary
+ * points and span the footprint. */
+typedef struct sl_map_query {
+    int32_t kind;                  /* SL_MAP_* */
+    int32_t channel, num_channels; /* the first one, and how many */
+    uint32_t first, lanes, mask;
+    sl_string filter; /* NULL: not given */
+    uint32_t given;   /* bit (1 << SL_MAP_OPTION_*): option was given, else it holds its default */
+    sl_string name[SL_LANES_MAX];
+    float at[3 * SL_LANES_MAX];
+    float du[3 * SL_LANES_MAX];
+    float dv[3 * SL_LANES_MAX];
+    float option[SL_MAP_OPTIONS][SL_LANES_MAX];
+} sl_map_query;
+
+enum { SL_POINT_CHANNELS_MAX = 16 };
+
+typedef struct sl_point_channel {
+    sl_string name;
+    int32_t type;  /* SL_TYPE_float, or one of three components */
+    float* values; /* planes of `lanes` */
+} sl_point_channel;
+
+/* Samples of bake() (at: s and t), bake3d() and texture3d() (at: P, then N). */
+typedef struct sl_point_query {
+    sl_string file;
+    int32_t num_at; /* planes of at: 2 or 6 */
+    uint32_t first, lanes, mask;
+    const float* at;
+    sl_string space; /* coordinate system of the file; NULL: world */
+    float radius;    /* bake3d: of the sample, texture3d: search; 0: not given */
+    float radius_scale;
+    int32_t num_channels;
+    sl_point_channel channel[SL_POINT_CHANNELS_MAX];
+} sl_point_query;
+
 typedef struct sl_services {
 #define SL_SERVICE(name, result, arguments, note) result(*name) arguments;
 #include "sl_services.def"

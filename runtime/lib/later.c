@@ -8,40 +8,6 @@ static void report(const sl_call* call, const char* text) {
     call->services->report(call->engine, 0, text);
 }
 
-static int is_named(sl_string name) {
-    return name && name[0];
-}
-
-static int same_text(const char* a, const char* b) {
-    while (*a && *a == *b)
-        a++, b++;
-    return *a == *b;
-}
-
-/* Value of the option "fill" among name/value pairs: what missing channels and unreadable maps
- * give. */
-static const sl_value* find_option(const sl_value* values, int n, const char* name) {
-    for (int i = 0; i + 1 < n; i += 2)
-        if (values[i].type == SL_TYPE_string && !values[i].varying &&
-            same_text(*(const sl_string*)values[i].data, name))
-            return &values[i + 1];
-    return 0;
-}
-
-static float slu_fill_(const sl_value* values, int n) {
-    const sl_value* fill = find_option(values, n, "fill");
-    if (!fill || fill->type != SL_TYPE_float)
-        return 0;
-    return *(const float*)fill->data;
-}
-
-static slf slv_fill_(const sl_value* values, int n) {
-    const sl_value* fill = find_option(values, n, "fill");
-    if (!fill || fill->type != SL_TYPE_float)
-        return (slf){0};
-    return fill->varying ? *(const slf*)fill->data : slv_spread_f(*(const float*)fill->data);
-}
-
 /* Outputs under the mask, and normals that a batch may lack. */
 static void slu_put_masked_3(const sl_call* call, slu3* to, slu3 a) {
     (void)call;

@@ -136,7 +136,21 @@ F FN(isindirectray)(CALL) OUT(isindirectray);
 S FN(raylabel)(CALL) OUT(raylabel);
 F FN(rayinfo)(CALL, sl_string key, const sl_value* out) OUT(rayinfo);
 
-/* maps */
+/* maps; _d: with the differences of the coordinates to the auxiliary points */
+F FN(texture_f_d)(CALL, sl_string name, float channel, F s, F t, F s_u, F t_u, F s_v, F t_v,
+                  const sl_value* values, int n) OUT(texture_f_d);
+V FN(texture_c_d)(CALL, sl_string name, float channel, F s, F t, F s_u, F t_u, F s_v, F t_v,
+                  const sl_value* values, int n) OUT(texture_c_d);
+F FN(environment_f_d)(CALL, sl_string name, float channel, V r, V r_u, V r_v,
+                      const sl_value* values, int n) OUT(environment_f_d);
+V FN(environment_c_d)(CALL, sl_string name, float channel, V r, V r_u, V r_v,
+                      const sl_value* values, int n) OUT(environment_c_d);
+F FN(shadow_f_d)(CALL, sl_string name, float channel, V p, V p_u, V p_v, const sl_value* values,
+                 int n) OUT(shadow_f_d);
+V FN(shadow_c_d)(CALL, sl_string name, float channel, V p, V p_u, V p_v, const sl_value* values,
+                 int n) OUT(shadow_c_d);
+V FN(bump_d)(CALL, sl_string name, float channel, V n, V dPds, V dPdt, F s, F t, F s_u, F t_u,
+             F s_v, F t_v, const sl_value* values, int num) OUT(bump_d);
 F FN(texture_f)(CALL, sl_string name, float channel, const sl_value* values, int n) OUT(texture_f);
 F FN(texture_f_st)(CALL, sl_string name, float channel, F s, F t, const sl_value* values, int n)
     OUT(texture_f_st);

@@ -67,6 +67,10 @@ public:
     std::array<float, 2> clipping{0, 1};
     int ray_level = 0, ray_type = SL_RAY_camera;
 
+    // What map() answers for a channel and a lane; none: there are no maps.
+    std::function<float(const sl_map_query&, int, std::uint32_t)> map;
+    std::vector<sl_map_query> queries; // those that were asked
+
     std::vector<std::string> printed;
     std::vector<std::string> reports;
     int num_light_calls = 0;
@@ -218,6 +222,37 @@ private:
     }
     static std::int32_t ray_kind_(void* engine) {
         return of(engine).ray_type;
+    }
+
+    // Every map is missing: reported once by name, the fill value for textures and environments.
+    static void map_(void* engine, const sl_map_query* query, float* result) {
+        TestEngine& e = of(engine);
+        e.queries.push_back(*query);
+        const bool fills = query->kind == SL_MAP_texture || query->kind == SL_MAP_environment;
+        for (std::uint32_t i = 0; i < query->lanes; i++) {
+            if (!(query->mask >> i & 1))
+                continue;
+            if (!e.map)
+                report_(engine, 0, (std::string("no map ") + query->name[i]).c_str());
+            for (int k = 0; k < query->num_channels; k++)
+                result[static_cast<std::uint32_t>(k) * query->lanes + i] =
+                    e.map   ? e.map(*query, k, i)
+                    : fills ? query->option[SL_MAP_OPTION_fill][i]
+                            : 0;
+        }
+    }
+    static std::int32_t map_info_(void* engine, sl_string name, sl_string, std::int32_t,
+                                  std::int32_t, void*) {
+        report_(engine, 0, (std::string("no map ") + name).c_str());
+        return 0;
+    }
+    static std::uint32_t bake_(void* engine, const sl_point_query* query) {
+        report_(engine, 0, (std::string("not baked: ") + query->file).c_str());
+        return 0;
+    }
+    static std::uint32_t texture3d_(void* engine, const sl_point_query* query) {
+        report_(engine, 0, (std::string("no points ") + query->file).c_str());
+        return 0;
     }
 
     sl_services services_{};

@@ -67,10 +67,12 @@ struct Expr {
     Loc loc;                // operator, name or first token
     std::string text;       // Name, Index, Call: the name; Text: the value; Cast: the space or ""
     double number = 0;
-    std::vector<Expr*> args;  // operands; Index: the index; Call: arguments; Assign: target, value
-    Expr* channel = nullptr;  // argument of a call: name[channel]
-    Symbol* symbol = nullptr; // checked: Name, Index
-    int builtin = -1;         // checked: Call of a built-in row
+    std::vector<Expr*> args;   // operands; Index: the index; Call: arguments; Assign: target, value
+    Expr* channel = nullptr;   // argument of a call: name[channel]
+    Symbol* symbol = nullptr;  // checked: Name, Index
+    bool is_component = false; // checked: Index into the last brackets' color, point ... or matrix
+    bool by_component = false; // checked: Call of a float function with triples
+    int builtin = -1;          // checked: Call of a built-in row
     Function* function = nullptr; // checked: Call of a user function
     Costs costs;                  // checked
     std::vector<Type>

@@ -53,7 +53,8 @@ std::string Dumper::expr(const Expr& e) {
     case ExprKind::Name:
         return e.text + channel;
     case ExprKind::Index:
-        return e.text + "[" + expr(*e.args[0]) + "]" + channel;
+        return e.text + "[" + expr(*e.args[0]) + "]" +
+               (e.args.size() > 1 ? "[" + expr(*e.args[1]) + "]" : "") + channel;
     case ExprKind::Call:
         return "(" + e.text + type + list(e.args) + ")";
     case ExprKind::Cast:

@@ -2,6 +2,9 @@
 // Checking of definitions and declarations: scopes, extern, function signatures.
 #include "slc/check.h"
 
+#include <algorithm>
+#include <utility>
+
 namespace slc {
 
 using ast::Function;
@@ -19,7 +22,9 @@ void Checker::run() {
             return;
         }
         if (d.function != nullptr) {
-            check_function(*d.function);
+            if (!d.function->checked) {
+                check_function(*d.function);
+            }
         } else {
             check_shader(*d.shader);
         }
@@ -28,6 +33,15 @@ void Checker::run() {
 
 void Checker::check_shader(ast::Shader& shader) {
     scopes_.push(false);
+    std::erase_if(shader.params, [&](const Variable& param) {
+        const bool again = !declared_params_.insert(param.symbol->name).second;
+        if (again) {
+            messages_.warning(param.symbol->loc, "parameter " + quoted(param.symbol->name) +
+                                                     " is declared again; the first stands");
+        }
+        return again;
+    });
+    declared_params_.clear();
     for (Variable& param : shader.params) {
         check_initialiser(param); // a default may use earlier parameters
         if (param.symbol->array_length == ast::unsized_array) {
@@ -96,9 +110,31 @@ void Checker::declare_function(Function& function) {
     scopes_.declare_function(&function);
 }
 
+// Macros declare what the shader has declared; from the second declaration on it is another
+// variable.
 void Checker::declare(Symbol& symbol) {
     if (!scopes_.declare(symbol.name, &symbol)) {
-        messages_.error(symbol.loc, quoted(symbol.name) + " is already declared in this scope");
+        messages_.warning(symbol.loc, quoted(symbol.name) +
+                                          " is declared again in this scope; this one is used from "
+                                          "here on");
+        scopes_.replace(symbol.name, &symbol);
+    }
+}
+
+// A function of the file that is called before its definition, in the scope of the file.
+void Checker::check_later_function(std::string_view name) {
+    for (const ast::Definition& d : file_.definitions) {
+        const bool is_open =
+            d.function != nullptr && std::find(open_functions_.begin(), open_functions_.end(),
+                                               d.function) != open_functions_.end();
+        if (d.function == nullptr || d.function->checked || is_open || d.function->name != name) {
+            continue;
+        }
+        Function* const outer = std::exchange(function_, nullptr);
+        Scopes::Inner inner = scopes_.leave_for_file();
+        check_function(*d.function);
+        scopes_.come_back(std::move(inner));
+        function_ = outer;
     }
 }
 
@@ -137,9 +173,10 @@ void Checker::declare_extern(Variable& variable) {
     }
     const bool interchange = is_pvn(wanted.type) && is_pvn(found->type);
     if (wanted.type != Type::Void && wanted.type != found->type && !interchange) {
-        messages_.error(wanted.loc, quoted(wanted.name) + " is " +
-                                        std::string(type_name(found->type)) + ", not " +
-                                        std::string(type_name(wanted.type)));
+        messages_.warning(wanted.loc, quoted(wanted.name) + " is " +
+                                          std::string(type_name(found->type)) + ", not " +
+                                          std::string(type_name(wanted.type)) +
+                                          "; it is used as what it is");
     }
     if (variable.init != nullptr || variable.has_elements) {
         messages_.error(wanted.loc, "an extern variable cannot be given a value here");

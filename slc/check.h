@@ -18,7 +18,8 @@ namespace slc {
 void check(ast::File& file, Messages& messages);
 
 // Implicit conversion costs (sl.md 2.4): exact 0, P/V/N 1, float to P/V/N 8, float to color 9,
-// float to matrix 10.
+// float to matrix 10; color to P/V/N and back, which the language does not have, last_resort.
+constexpr std::uint8_t last_resort = 100;
 [[nodiscard]] std::uint8_t conversion_cost(Type from, Type to);
 [[nodiscard]] constexpr bool is_pvn(Type t) {
     return t >= Type::Point && t <= Type::Normal;
@@ -73,6 +74,8 @@ private:
         Type left = Type::Void, right = Type::Void, result = Type::Void;
     };
     Operands choose_operands(Op op, ast::Expr& left, ast::Expr& right);
+    bool cast_mixed_operand(ast::Expr& e);
+    void component_costs(ast::Expr& e);
 
     // Delivers e as `wanted`; `what` names the place for the message ("the angle").
     void deliver(ast::Expr& e, Type wanted, std::string_view what);
@@ -88,12 +91,17 @@ private:
         Type result = Type::Void;
         std::uint32_t cost = 0;
         std::vector<Type> arg_types; // Void: array, or output argument taken as it is
+        bool by_component = false;
     };
     void call_costs(ast::Expr& e);
     void settle_call(ast::Expr& e, std::optional<Type> natural);
     std::vector<Candidate> candidates(ast::Expr& e);
     bool match_function(ast::Expr& e, ast::Function& f, Candidate& c);
     void match_row(ast::Expr& e, int row, std::vector<Candidate>& out);
+    void match_by_component(ast::Expr& e, int row, std::vector<Candidate>& out);
+    void check_later_function(std::string_view name);
+    void settle_arguments(ast::Expr& e);
+    void warn_about_call(const ast::Expr& e);
     bool match_arg(ast::Expr& arg, const ArgSpec& spec, Type pvn, Candidate& c);
     bool match_output(ast::Expr& arg, const ArgSpec& spec, Candidate& c);
     bool match_extras(ast::Expr& e, const BuiltinRow& row, Type pvn, Candidate& c);
@@ -110,6 +118,7 @@ private:
     int loop_depth_ = 0;
     std::set<std::pair<const ast::Function*, std::string>> warned_extern_;
     std::set<const ast::Symbol*> warned_assigned_;
+    std::set<std::string> declared_params_; // of the shader being checked
 };
 
 } // namespace slc

@@ -107,7 +107,7 @@ std::uint8_t conversion_cost(Type from, Type to) {
         return 1;
     }
     if (from != Type::Float) {
-        return no_cost;
+        return is_triple(from) && is_triple(to) ? last_resort : no_cost;
     }
     return is_pvn(to) ? 8 : to == Type::Color ? 9 : to == Type::Matrix ? 10 : no_cost;
 }
@@ -204,11 +204,29 @@ void Checker::index_costs(Expr& e) {
     if (e.symbol == nullptr) {
         return;
     }
-    if (e.symbol->array_length == 0) {
-        fail(e, quoted(e.text) + " is not an array");
+    const bool is_array = e.symbol->array_length != 0;
+    if (is_array && e.args.size() == 1) {
+        e.costs[e.symbol->type] = 0;
         return;
     }
-    e.costs[e.symbol->type] = 0;
+    component_costs(e);
+}
+
+// c[i], m[row][column], array_of_points[k][i]: as later versions of the language have it.
+void Checker::component_costs(Expr& e) {
+    const bool is_array = e.symbol->array_length != 0;
+    const std::size_t wanted = e.symbol->type == Type::Matrix ? 2 : 1;
+    const bool has_parts = is_triple(e.symbol->type) || (!is_array && wanted == 2);
+    if (!has_parts || e.args.size() != wanted + (is_array ? 1 : 0)) {
+        fail(e, is_array ? "an element of array " + quoted(e.text) + " takes no more indices"
+                         : quoted(e.text) + " is not an array");
+        return;
+    }
+    if (e.args.size() == 2) {
+        deliver(*e.args[1], Type::Float, "an index");
+    }
+    e.is_component = true;
+    e.costs[Type::Float] = 0;
 }
 
 // A cast is decisive: it picks the overload that gives its type, and only then converts
@@ -221,7 +239,7 @@ void Checker::cast_costs(Expr& e) {
     if (c.failed) {
         return;
     }
-    if (cost_to(operand, e.type) != no_cost) {
+    if (cost_to(operand, e.type) < last_resort) {
         deliver(operand, e.type, "the operand of a cast");
         return;
     }
@@ -290,7 +308,10 @@ void Checker::binary_costs(Expr& e) {
         e.costs.failed = true;
         return;
     }
-    const Operands chosen = choose_operands(e.op, left, right);
+    Operands chosen = choose_operands(e.op, left, right);
+    if (chosen.result == Type::Void && cast_mixed_operand(e)) {
+        chosen = choose_operands(e.op, *e.args[0], *e.args[1]);
+    }
     if (chosen.result == Type::Void) {
         std::string text = "operator " + std::string(op_text(e.op)) + " does not take " +
                            describe(costs(left)) + " and " + describe(costs(right));
@@ -307,8 +328,46 @@ void Checker::binary_costs(Expr& e) {
     e.operand_types[0] = chosen.left;
     e.operand_types[1] = chosen.right;
     e.costs[chosen.result] = 0;
-    settle(left, chosen.left);
-    settle(right, chosen.right);
+    settle(*e.args[0], chosen.left);
+    settle(*e.args[1], chosen.right);
+}
+
+// A color beside a point: the language has no operator for them; the right operand is taken as the
+// type of the left, for products and the like the point as a color.
+bool Checker::cast_mixed_operand(Expr& e) {
+    const auto kind = [&](Expr& operand) {
+        const Costs& c = costs(operand);
+        Type best = Type::Void;
+        for (const Type t : {Type::Color, Type::Point, Type::Vector, Type::Normal}) {
+            if (c[t] < (best == Type::Void ? no_cost : c[best])) {
+                best = t;
+            }
+        }
+        return best;
+    };
+    const Type left = kind(*e.args[0]);
+    const Type right = kind(*e.args[1]);
+    const bool mixed =
+        (left == Type::Color && is_pvn(right)) || (is_pvn(left) && right == Type::Color);
+    if (!mixed) {
+        return false;
+    }
+    // What is assigned keeps its type; otherwise the geometry gives way.
+    const bool odd_is_right = e.kind == ExprKind::Assign || left == Type::Color;
+    Expr*& odd = e.args[odd_is_right ? 1 : 0];
+    const Type kept = odd_is_right ? left : right;
+    messages_.warning(e.loc, "operator " + std::string(op_text(e.op)) + " does not take " +
+                                 std::string(type_name(left)) + " and " +
+                                 std::string(type_name(right)) + "; the " +
+                                 std::string(type_name(odd_is_right ? right : left)) +
+                                 " is taken as a " + std::string(type_name(kept)));
+    Expr& cast = file_.exprs.emplace_back();
+    cast.kind = ExprKind::Cast;
+    cast.loc = odd->loc;
+    cast.type = kept;
+    cast.args = {odd};
+    odd = &cast;
+    return true;
 }
 
 // Both values must reach a common type; the request from outside passes through to them.
@@ -406,7 +465,7 @@ void Checker::assign_costs(Expr& e) {
         return;
     }
     mark_assigned(target);
-    const Type type = target.symbol->type;
+    const Type type = target.is_component ? Type::Float : target.symbol->type;
     target.type = type;
     e.costs[type] = 0;
     if (e.op == Op::Copy) {
@@ -416,7 +475,10 @@ void Checker::assign_costs(Expr& e) {
     if (costs(value).failed) {
         return;
     }
-    const Operands chosen = choose_operands(e.op, target, value);
+    Operands chosen = choose_operands(e.op, target, value);
+    if (chosen.result == Type::Void && cast_mixed_operand(e)) {
+        chosen = choose_operands(e.op, target, *e.args[1]);
+    }
     if (chosen.result == Type::Void || conversion_cost(chosen.result, type) == no_cost) {
         fail(e, "operator " + std::string(op_text(e.op)) + "= does not take " +
                     std::string(type_name(type)) + " and " + describe(costs(value)));
@@ -424,7 +486,7 @@ void Checker::assign_costs(Expr& e) {
     }
     e.operand_types[0] = chosen.left;
     e.operand_types[1] = chosen.right;
-    settle(value, chosen.right);
+    settle(*e.args[1], chosen.right);
 }
 
 std::uint8_t Checker::cost_to(Expr& e, Type wanted) {
@@ -465,6 +527,11 @@ void Checker::deliver(Expr& e, Type wanted, std::string_view what) {
         fail(e, std::string(what) + " is " + std::string(type_name(wanted)) + ", but " + from +
                     " is given" + (castable ? "; a cast would convert it" : ""));
         return;
+    }
+    if (best >= last_resort && c[best_type] < last_resort) {
+        messages_.warning(e.loc, std::string(what) + " is " + std::string(type_name(wanted)) +
+                                     ", but " + std::string(type_name(best_type)) +
+                                     " is given; its components are taken as they are");
     }
     settle(e, best_type);
 }

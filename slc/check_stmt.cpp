@@ -149,7 +149,8 @@ void Checker::return_statement(ast::Stmt& s) {
         return;
     }
     if (function_ == nullptr) {
-        messages_.error(s.loc, "a shader returns no value");
+        messages_.warning(s.loc, "a shader returns no value; this one is left out");
+        s.exprs.clear();
         return;
     }
     if (!function_->result) {
@@ -157,8 +158,9 @@ void Checker::return_statement(ast::Stmt& s) {
         return;
     }
     if (*function_->result == Type::Void) {
-        messages_.error(s.loc,
-                        "function " + quoted(function_->name) + " is void and returns no value");
+        messages_.warning(s.loc, "function " + quoted(function_->name) +
+                                     " is void and returns no value; this one is left out");
+        s.exprs.clear();
         return;
     }
     deliver(*s.exprs[0], *function_->result, "the value returned");

@@ -243,33 +243,39 @@ VarId Lowering::variable(const Symbol& symbol, Loc loc) {
     }
     const VariableRow& row = variable_rows()[static_cast<std::size_t>(symbol.global)];
     if (in_init_) {
-        messages_.error_once(
+        messages_.warning_once(
             loc, "the default of a parameter is evaluated once per instance and cannot use " +
-                     quoted(row.name));
-        return global(symbol.global, loc);
+                     quoted(row.name) + "; 0 is used");
+        return zero(symbol.type);
     }
     const std::uint32_t bit = shader_type_bit(shader_.type);
     if (((row.readable | row.writable) & bit) == 0) {
-        messages_.error_once(loc, quoted(row.name) + " does not exist in " +
-                                      std::string(shader_type_name(shader_.type)) + " shaders");
-        return global(symbol.global, loc);
+        messages_.warning_once(loc, quoted(row.name) + " does not exist in " +
+                                        std::string(shader_type_name(shader_.type)) +
+                                        " shaders; a local variable of this name, at first 0, is "
+                                        "used");
+        return copy_of_global(symbol, zero(symbol.type), loc);
     }
     check_light_variable(symbol.global, loc);
     if (symbol.assigned && (row.writable & bit) == 0) {
-        VarId& copy = global_copies_[symbol.global];
-        if (copy == no_var) {
-            const VarId source = global(symbol.global, loc);
-            copy = local(symbol.name, symbol.type, 0, loc);
-            Stmt s;
-            s.op = Op::Copy;
-            s.dst = copy;
-            s.args = {source};
-            s.loc = loc;
-            prologue_.push_back(std::move(s));
-        }
-        return copy;
+        return copy_of_global(symbol, global(symbol.global, loc), loc);
     }
     return global(symbol.global, loc);
+}
+
+// The local variable that stands for a predefined one; it starts with the value of `source`.
+VarId Lowering::copy_of_global(const Symbol& symbol, VarId source, Loc loc) {
+    VarId& copy = global_copies_[symbol.global];
+    if (copy == no_var) {
+        copy = local(symbol.name, symbol.type, 0, loc);
+        Stmt s;
+        s.op = Op::Copy;
+        s.dst = copy;
+        s.args = {source};
+        s.loc = loc;
+        prologue_.push_back(std::move(s));
+    }
+    return copy;
 }
 
 VarId Lowering::assignable(const Symbol& symbol, Loc loc) {

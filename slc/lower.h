@@ -59,6 +59,7 @@ private:
     VarId global(int id, Loc loc);
     VarId variable(const ast::Symbol& symbol, Loc loc);
     VarId assignable(const ast::Symbol& symbol, Loc loc);
+    VarId copy_of_global(const ast::Symbol& symbol, VarId source, Loc loc);
     void check_light_variable(int id, Loc loc);
 
     // lower_stmt.cpp
@@ -97,11 +98,16 @@ private:
     VarId index(const ast::Expr& e, VarId into);
     VarId assign(const ast::Expr& e);
     VarId assign_element(const ast::Expr& e);
+    VarId component(const ast::Expr& e, VarId into);
+    VarId assign_component(const ast::Expr& e);
+    VarId component_of(VarId whole, const std::vector<VarId>& at, VarId into, Loc loc);
     [[nodiscard]] Type compound_type(const ast::Expr& e) const;
 
     // lower_call.cpp
     VarId call(const ast::Expr& e, VarId into);
     VarId builtin_call(const ast::Expr& e, VarId into);
+    VarId call_by_component(const ast::Expr& e, VarId into);
+    static int row_of_body(std::string_view body);
     VarId builtin_by_body(std::string_view body, std::vector<VarId> args, Type result, Loc loc);
     struct WriteBack { // element of an array that a call sets
         VarId array = no_var, index = no_var, element = no_var;

@@ -31,12 +31,35 @@ VarId Lowering::call(const Expr& e, VarId into) {
 // A built-in found by the name of its body, for calls the language makes itself (space casts).
 VarId Lowering::builtin_by_body(std::string_view body, std::vector<VarId> args, Type result,
                                 Loc loc) {
+    const VarId dst = temp(result, loc);
+    emit(Op::Call, dst, std::move(args), loc).builtin = row_of_body(body);
+    return dst;
+}
+
+int Lowering::row_of_body(std::string_view body) {
     const auto rows = builtin_rows();
     const auto it =
         std::find_if(rows.begin(), rows.end(), [&](const BuiltinRow& r) { return r.body == body; });
-    const VarId dst = temp(result, loc);
-    emit(Op::Call, dst, std::move(args), loc).builtin = static_cast<int>(it - rows.begin());
-    return dst;
+    return static_cast<int>(it - rows.begin());
+}
+
+// A function of floats, called for each component of its triples.
+VarId Lowering::call_by_component(const Expr& e, VarId into) {
+    const std::vector<VarId> given = operands(e.args, e.arg_types);
+    std::vector<VarId> parts;
+    for (int k = 0; k < 3; ++k) {
+        std::vector<VarId> args;
+        for (const VarId id : given) {
+            const bool whole = is_triple(var(id).type);
+            args.push_back(
+                whole ? component_of(id, {constant(static_cast<float>(k))}, no_var, e.loc) : id);
+        }
+        parts.push_back(temp(Type::Float, e.loc));
+        emit(Op::Call, parts.back(), std::move(args), e.loc).builtin = e.builtin;
+    }
+    const VarId result = target(e.type, into, e.loc);
+    emit(Op::Triple, result, parts, e.loc);
+    return result;
 }
 
 VarId Lowering::output_argument(const Expr& e, std::vector<WriteBack>& back) {
@@ -71,6 +94,9 @@ VarId Lowering::builtin_call(const Expr& e, VarId into) {
         messages_.error_once(e.loc, "the default of a parameter is evaluated once per instance and "
                                     "cannot call " +
                                         quoted(row.name));
+    }
+    if (e.by_component) {
+        return call_by_component(e, into);
     }
     std::vector<VarId> args;
     std::vector<WriteBack> back;
@@ -108,6 +134,13 @@ VarId Lowering::builtin_call(const Expr& e, VarId into) {
 // Output formals and arrays are names of the actual variable. An array formal that is assigned
 // without being output gets a copy.
 void Lowering::bind_reference(const Symbol& formal, const Expr& arg, std::vector<WriteBack>& back) {
+    const bool is_variable =
+        arg.kind == ExprKind::Name || (arg.kind == ExprKind::Index && !arg.is_component);
+    if (formal.array_length == 0 && !is_variable) { // what is set is lost
+        const VarId given = value_as(arg, formal.type);
+        emit(Op::Copy, local_for(formal), {given}, arg.loc);
+        return;
+    }
     if (formal.array_length == 0) {
         variables_[&formal] = output_argument(arg, back);
         return;

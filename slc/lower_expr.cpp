@@ -250,6 +250,9 @@ VarId Lowering::index(const Expr& e, VarId into) {
     if (e.symbol == nullptr) {
         return constant(0);
     }
+    if (e.is_component) {
+        return component(e, into);
+    }
     const VarId at = value_as(*e.args[0], Type::Float);
     const VarId array = variable(*e.symbol, e.loc);
     const VarId result = target(e.symbol->type, into, e.loc);
@@ -263,7 +266,7 @@ VarId Lowering::assign(const Expr& e) {
         return constant(0);
     }
     if (left.kind == ExprKind::Index) {
-        return assign_element(e);
+        return left.is_component ? assign_component(e) : assign_element(e);
     }
     if (left.symbol->array_length != 0) {
         emit(Op::Copy, assignable(*left.symbol, left.loc), {variable(*e.args[1]->symbol, e.loc)},
@@ -311,6 +314,62 @@ VarId Lowering::assign_element(const Expr& e) {
     }
     emit(Op::Store, array, {at, result}, e.loc);
     return result;
+}
+
+// comp(c, i) or comp(m, row, column)
+VarId Lowering::component_of(VarId whole, const std::vector<VarId>& at, VarId into, Loc loc) {
+    std::vector<VarId> args = {whole};
+    args.insert(args.end(), at.begin(), at.end());
+    const VarId result = target(Type::Float, into, loc);
+    emit(Op::Call, result, std::move(args), loc).builtin =
+        row_of_body(at.size() == 2 ? "comp_m" : "comp_3");
+    return result;
+}
+
+// c[i], m[i][j], a[k][i]: in an array the first index picks the element
+VarId Lowering::component(const Expr& e, VarId into) {
+    std::vector<VarId> at = operands(e.args, std::vector<Type>(e.args.size(), Type::Float));
+    VarId whole = variable(*e.symbol, e.loc);
+    if (e.symbol->array_length != 0) {
+        const VarId element = temp(e.symbol->type, e.loc);
+        emit(Op::Load, element, {whole, at[0]}, e.loc);
+        whole = element;
+        at.erase(at.begin());
+    }
+    return component_of(whole, at, into, e.loc);
+}
+
+VarId Lowering::assign_component(const Expr& e) {
+    const Expr& left = *e.args[0];
+    const Type type = left.symbol->type;
+    std::vector<VarId> at;
+    for (const Expr* index : left.args) {
+        at.push_back(protect(value_as(*index, Type::Float), index->loc));
+    }
+    const VarId right = protect(value_as(*e.args[1], Type::Float), e.loc);
+    const VarId variable = assignable(*left.symbol, left.loc);
+    const bool is_array = left.symbol->array_length != 0;
+    VarId whole = variable;
+    const VarId element_at = at[0];
+    if (is_array) {
+        whole = local("element", type, 0, e.loc);
+        emit(Op::Load, whole, {variable, element_at}, e.loc);
+        at.erase(at.begin());
+    }
+    VarId part = right;
+    if (e.op != Op::Copy) {
+        const VarId old = component_of(whole, at, no_var, e.loc);
+        part = arithmetic(e.op, old, right, Type::Float, no_var, e.loc);
+    }
+    std::vector<VarId> args = {whole};
+    args.insert(args.end(), at.begin(), at.end());
+    args.push_back(part);
+    emit(Op::Call, no_var, std::move(args), e.loc).builtin =
+        row_of_body(at.size() == 2 ? "setcomp_m" : "setcomp_3");
+    if (is_array) {
+        emit(Op::Store, variable, {element_at, whole}, e.loc);
+    }
+    return part;
 }
 
 } // namespace slc

@@ -17,8 +17,11 @@ using ast::Symbol;
 namespace {
 
 bool is_lvalue(const Expr& e) {
-    return e.kind == ExprKind::Name || e.kind == ExprKind::Index;
+    return e.kind == ExprKind::Name || (e.kind == ExprKind::Index && !e.is_component);
 }
+
+// An expression where a function sets a variable: what is set is lost.
+constexpr std::uint32_t lost_output = 60;
 
 } // namespace
 
@@ -39,16 +42,21 @@ bool Checker::match_function(Expr& e, Function& f, Candidate& c) {
             const bool lengths = formal.array_length == ast::unsized_array ||
                                  array->array_length == ast::unsized_array ||
                                  array->array_length == formal.array_length;
-            if (array->type != formal.type || !lengths) {
+            const std::uint8_t cost = conversion_cost(array->type, formal.type);
+            if (cost > 1) {
                 return false;
             }
+            c.cost += cost + (lengths ? 0U : 20U);
             c.arg_types.push_back(Type::Void);
             continue;
         }
         std::uint32_t cost = cost_to(arg, formal.type);
-        if (formal.is_output && !costs(arg).failed) {
-            const bool back = is_lvalue(arg) && conversion_cost(formal.type, arg.symbol->type) <= 1;
-            cost = back ? cost : no_cost;
+        if (formal.is_output && !costs(arg).failed && cost != no_cost) {
+            const bool back =
+                is_lvalue(arg) && (is_triple(formal.type) && is_triple(arg.symbol->type)
+                                       ? true
+                                       : formal.type == arg.symbol->type);
+            cost = back ? cost : !is_lvalue(arg) ? cost + lost_output : no_cost;
         }
         if (cost == no_cost) {
             return false;
@@ -204,7 +212,48 @@ std::vector<Checker::Candidate> Checker::candidates(Expr& e) {
     for (const int row : find_builtins(e.text)) {
         match_row(e, row, out);
     }
+    for (const int row : find_builtins(e.text)) {
+        if (out.empty()) {
+            match_by_component(e, row, out);
+        }
+    }
     return out;
+}
+
+// exp(color): a function of floats, for each component. Not in the language, but meant by whoever
+// writes it.
+void Checker::match_by_component(Expr& e, int number, std::vector<Candidate>& out) {
+    const BuiltinRow& row = builtin_rows()[static_cast<std::size_t>(number)];
+    const auto is_float = [](const ArgSpec& spec) {
+        return spec.kind == ArgKind::Exact && spec.type == Type::Float && !spec.is_output &&
+               !spec.is_array;
+    };
+    const bool suits = row.has(PropPure) && is_float(row.result) && !row.args.empty() &&
+                       row.args.size() == e.args.size() &&
+                       std::all_of(row.args.begin(), row.args.end(), is_float);
+    if (!suits) {
+        return;
+    }
+    Candidate c;
+    c.builtin = number;
+    c.by_component = true;
+    c.cost = last_resort;
+    for (Expr* arg : e.args) {
+        Type type = array_of(*arg) == nullptr && arg->channel == nullptr ? Type::Float : Type::Void;
+        for (const Type t : {Type::Color, Type::Point, Type::Vector, Type::Normal}) {
+            const bool is_triple_only =
+                type == Type::Float && cost_to(*arg, Type::Float) == no_cost && costs(*arg)[t] <= 1;
+            type = is_triple_only ? t : type;
+        }
+        if (type == Type::Void || cost_to(*arg, type) == no_cost) {
+            return;
+        }
+        c.result = c.result == Type::Void && type != Type::Float ? type : c.result;
+        c.arg_types.push_back(type);
+    }
+    if (c.result != Type::Void) {
+        out.push_back(c);
+    }
 }
 
 // name[channel] of texture functions: the parser saw an index, but a plain string has none (note
@@ -219,7 +268,11 @@ void Checker::split_channel(Expr& e) {
     }
     Expr& name = *e.args[0];
     resolve_name(name);
-    if (name.symbol != nullptr && name.symbol->array_length == 0) {
+    const bool is_array = name.symbol != nullptr && name.symbol->array_length != 0;
+    if (is_array && name.args.size() == 2) {
+        name.channel = name.args[1];
+        name.args.pop_back();
+    } else if (name.symbol != nullptr && !is_array) {
         name.kind = ExprKind::Name;
         name.channel = name.args[0];
         name.args.clear();
@@ -284,7 +337,11 @@ void Checker::call_costs(Expr& e) {
         e.costs.failed = true;
         return;
     }
-    const std::vector<Candidate> found = candidates(e);
+    std::vector<Candidate> found = candidates(e);
+    if (found.empty()) {
+        check_later_function(e.text);
+        found = candidates(e);
+    }
     if (found.empty()) {
         no_candidate(e);
         return;
@@ -316,12 +373,45 @@ void Checker::settle_call(Expr& e, std::optional<Type> natural) {
     e.builtin = best->builtin;
     e.function = best->function;
     e.arg_types = best->arg_types;
+    e.by_component = best->by_component;
     if (!natural && other_result && e.builtin >= 0 &&
         builtin_rows()[static_cast<std::size_t>(e.builtin)].has(PropTextures)) {
         messages_.warning(e.loc, quoted(e.text) + " can give several types here; " +
                                      std::string(type_name(e.type)) +
                                      " is taken, a cast would say which");
     }
+    warn_about_call(e);
+    settle_arguments(e);
+}
+
+// What a call asks for that the language does not have, once it is settled.
+void Checker::warn_about_call(const Expr& e) {
+    if (e.by_component) {
+        messages_.warning(e.loc, quoted(e.text) + " takes floats; it is applied to each component");
+    }
+    if (e.function == nullptr) {
+        return;
+    }
+    for (std::size_t i = 0; i < e.args.size(); ++i) {
+        const Symbol& formal = *e.function->formals[i];
+        Expr& arg = *e.args[i];
+        const std::string place = "argument " + std::to_string(i + 1) + " of " + quoted(e.text);
+        if (formal.array_length == 0 && formal.is_output && !is_lvalue(arg)) {
+            messages_.warning(arg.loc, place + " is set by the function, but is not a variable; "
+                                               "what is set is lost");
+        }
+        const Symbol* array = formal.array_length != 0 ? array_of(arg) : nullptr;
+        if (array != nullptr && array->array_length != ast::unsized_array &&
+            array->array_length < formal.array_length) {
+            messages_.warning(arg.loc, place + " has " + std::to_string(array->array_length) +
+                                           " elements, fewer than the " +
+                                           std::to_string(formal.array_length) +
+                                           " the function declares");
+        }
+    }
+}
+
+void Checker::settle_arguments(Expr& e) {
     for (std::size_t i = 0; i < e.args.size(); ++i) {
         Expr& arg = *e.args[i];
         if (e.arg_types[i] != Type::Void) {

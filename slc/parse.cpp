@@ -59,6 +59,61 @@ std::optional<Type> type_of_word(Tok kind) {
     }
 }
 
+namespace {
+
+// Nothing that a type can stand before: the word before it is an operand.
+bool follows_operand(Tok kind) {
+    switch (kind) {
+    case Tok::Assign:
+    case Tok::PlusAssign:
+    case Tok::MinusAssign:
+    case Tok::StarAssign:
+    case Tok::SlashAssign:
+    case Tok::RightParen:
+    case Tok::RightBracket:
+    case Tok::Comma:
+    case Tok::Semicolon:
+    case Tok::Dot:
+    case Tok::Star:
+    case Tok::Slash:
+    case Tok::Percent:
+    case Tok::Caret:
+    case Tok::Equal:
+    case Tok::NotEqual:
+    case Tok::Less:
+    case Tok::LessEqual:
+    case Tok::Greater:
+    case Tok::GreaterEqual:
+    case Tok::And:
+    case Tok::Or:
+    case Tok::Question:
+    case Tok::Colon:
+        return true;
+    default:
+        return false;
+    }
+}
+
+bool is_word_since_3_2(Tok kind) {
+    return kind == Tok::WordVector || kind == Tok::WordNormal || kind == Tok::WordMatrix;
+}
+
+} // namespace
+
+bool Parser::is_name(std::size_t ahead) const {
+    const Token& token = peek(ahead);
+    if (token.kind == Tok::Name || !is_word_since_3_2(token.kind)) {
+        return token.kind == Tok::Name;
+    }
+    const Tok next = peek(ahead + 1).kind;
+    const bool unclear = next == Tok::Plus || next == Tok::Minus || next == Tok::LeftBracket;
+    return follows_operand(next) || (unclear && type_words_as_names_.contains(token.text));
+}
+
+std::optional<Type> Parser::type_at(std::size_t ahead) const {
+    return is_name(ahead) ? std::nullopt : type_of_word(peek(ahead).kind);
+}
+
 Parser::Nest::Nest(Parser& parser) : parser_(parser) {
     if (++parser_.depth_ > max_nesting) {
         const Token at = parser_.peek();
@@ -176,18 +231,43 @@ void Parser::definition() {
     if (accept(Tok::Semicolon)) {
         return;
     }
+    type_words_as_names_.clear();
+    if (is(Tok::RightBrace)) {
+        messages_.warning(take().loc, "this '}' closes nothing; it is left out");
+        return;
+    }
     if (at_shader()) {
         shader_def();
         return;
     }
+    later_language();
+    foreign_type();
     ast::Definition d;
     d.function = function_def();
-    file_->definitions.push_back(d);
+    if (d.function != nullptr) {
+        file_->definitions.push_back(d);
+    }
 }
 
-// Shader types are reserved only here (note 10).
+// Classes and structures came in 2007; one message for the file, since nothing else would fit.
+void Parser::later_language() {
+    const bool starts = is(Tok::Name) && is(Tok::Name, 1) &&
+                        (peek().text == "class" || peek().text == "struct" ||
+                         peek().text == "plugin" || peek().text == "public");
+    if (!starts) {
+        return;
+    }
+    messages_.error(peek().loc, quoted(peek().text) +
+                                    " belongs to version 2 of the Shading Language; this compiler "
+                                    "knows shaders and functions, the rest is not read");
+    stop();
+    throw SyntaxError{};
+}
+
+// Shader types are reserved only here (note 10); any word may name a shader.
 bool Parser::at_shader() const {
-    return shader_word(peek()) != nullptr && is(Tok::Name, 1) && is(Tok::LeftParen, 2);
+    return shader_word(peek()) != nullptr && is(Tok::LeftParen, 2) &&
+           (is(Tok::Name, 1) || type_of_word(peek(1).kind));
 }
 
 // shader-def = shader-type IDENT "(" [ shader-formals ] ")" "{" { statement } "}"
@@ -208,6 +288,7 @@ void Parser::shader_def() {
 }
 
 // function-def = [ [ detail ] type ] IDENT "(" [ fn-formals ] ")" "{" { statement } "}" [ ";" ]
+// A prototype says nothing that the definition does not; nullptr is returned for it.
 Function* Parser::function_def() {
     const Nest nest(*this);
     const TypeSpec spec = typespec(false);
@@ -220,6 +301,9 @@ Function* Parser::function_def() {
     expect(Tok::LeftParen, "after the name of a function");
     fn_formals(function);
     expect(Tok::RightParen, "after the formal parameters");
+    if (accept(Tok::Semicolon)) {
+        return nullptr;
+    }
     expect(Tok::LeftBrace, "before the body of a function");
     statements(function.body);
     expect(Tok::RightBrace, "at the end of function " + quoted(function.name));
@@ -227,29 +311,37 @@ Function* Parser::function_def() {
     return &function;
 }
 
-// typespec = [ detail ] type; with the optional words before it
+// typespec = [ detail ] type; with the optional words on either side of the type, and the length
+// of an array after it (type[N] name)
 Parser::TypeSpec Parser::typespec(bool output_allowed) {
     TypeSpec spec;
     spec.loc = peek().loc;
+    qualifiers(spec, output_allowed);
+    spec.type = type_at();
+    if (spec.type) {
+        take();
+        qualifiers(spec, output_allowed);
+        if (accept(Tok::LeftBracket)) {
+            spec.array_length = array_length(true);
+        }
+    }
+    return spec;
+}
+
+void Parser::qualifiers(TypeSpec& spec, bool output_allowed) {
     for (;;) {
         if (output_allowed && accept(Tok::WordOutput)) {
             spec.is_output = true;
         } else if (is(Tok::WordUniform) || is(Tok::WordVarying)) {
             spec.detail = take().kind == Tok::WordUniform ? Detail::Uniform : Detail::Varying;
         } else {
-            break;
+            return;
         }
     }
-    spec.type = type_of_word(peek().kind);
-    if (spec.type) {
-        take();
-    }
-    return spec;
 }
 
 bool Parser::at_formal_group() const {
-    return is(Tok::WordOutput) || is(Tok::WordUniform) || is(Tok::WordVarying) ||
-           type_of_word(peek().kind);
+    return is(Tok::WordOutput) || is(Tok::WordUniform) || is(Tok::WordVarying) || type_at();
 }
 
 // shader-formals = { ";" } shader-formal { ";" { ";" } shader-formal } { ";" }
@@ -269,11 +361,15 @@ void Parser::shader_formals(ast::Shader& shader) {
             if (is(Tok::Assign)) {
                 initialiser(variable);
             } else {
-                messages_.error(variable.symbol->loc, "parameter " + quoted(variable.symbol->name) +
-                                                          " has no default value; write = ...");
+                messages_.warning(variable.symbol->loc,
+                                  "parameter " + quoted(variable.symbol->name) +
+                                      " has no default value; " +
+                                      (spec.type == Type::String ? "it is \"\"" : "it is 0"));
+                variable.init = default_value(*variable.symbol);
             }
             shader.params.push_back(std::move(variable));
-        } while (accept(Tok::Comma) && !at_formal_group());
+        } while (accept(Tok::Comma) && !at_formal_group() && !is(Tok::RightParen) &&
+                 !is(Tok::Semicolon));
         if (!is(Tok::RightParen) && !is(Tok::Semicolon) && !at_formal_group()) {
             fail(peek(), "expected ';' or ')' after a parameter");
         }
@@ -293,16 +389,25 @@ void Parser::fn_formals(Function& function) {
         }
         do {
             function.formals.push_back(new_symbol(spec, SymbolKind::Formal, true));
-        } while (accept(Tok::Comma) && !at_formal_group());
+        } while (accept(Tok::Comma) && !at_formal_group() && !is(Tok::RightParen) &&
+                 !is(Tok::Semicolon));
         if (!is(Tok::RightParen) && !is(Tok::Semicolon) && !at_formal_group()) {
             fail(peek(), "expected ';' or ')' after a formal parameter");
         }
     }
 }
 
+Expr* Parser::default_value(const Symbol& symbol) {
+    return new_expr(symbol.type == Type::String ? ExprKind::Text : ExprKind::Number, symbol.loc);
+}
+
 // fn-name = IDENT [ "[" [ NUMBER ] "]" ]
 Symbol* Parser::new_symbol(const TypeSpec& spec, SymbolKind kind, bool unsized_allowed) {
-    const Token& name = expect(Tok::Name, "of a variable");
+    const bool is_old_name = is_word_since_3_2(peek().kind);
+    const Token& name = is_old_name ? take() : expect(Tok::Name, "of a variable");
+    if (is_old_name) {
+        type_words_as_names_.insert(name.text);
+    }
     Symbol& symbol = file_->symbols.emplace_back();
     symbol.name = name.text;
     symbol.kind = kind;
@@ -310,6 +415,7 @@ Symbol* Parser::new_symbol(const TypeSpec& spec, SymbolKind kind, bool unsized_a
     symbol.detail = spec.detail;
     symbol.is_output = spec.is_output;
     symbol.loc = name.loc;
+    symbol.array_length = spec.array_length;
     if (spec.type == Type::Void) {
         messages_.error(spec.loc, "a variable cannot be void");
         symbol.type = Type::Float;
@@ -345,8 +451,17 @@ void Parser::initialiser(Variable& variable) {
     expect(Tok::Assign, "before the value");
     if (is(Tok::LeftBrace)) {
         array_init(variable);
-    } else {
-        variable.init = expr();
+        return;
+    }
+    variable.init = expr();
+    const bool is_list = variable.symbol->array_length != 0 &&
+                         variable.init->kind == ExprKind::Tuple &&
+                         !is_triple(variable.symbol->type);
+    if (is_list) { // float a[3] = (1, 2, 3)
+        variable.has_elements = true;
+        variable.elements = variable.init->args;
+        count_elements(variable, variable.init->loc);
+        variable.init = nullptr;
     }
 }
 
@@ -365,24 +480,50 @@ void Parser::array_init(Variable& variable) {
         }
     }
     expect(Tok::RightBrace, "after the elements of an array");
-    const int given = static_cast<int>(variable.elements.size());
     if (symbol.array_length == 0) {
-        messages_.error(open.loc,
-                        quoted(symbol.name) + " is not an array, but is given a list of values");
-    } else if (given == 0) {
-        messages_.error(open.loc, "an array has at least one element");
+        list_for_value(variable, open.loc);
+    } else {
+        count_elements(variable, open.loc);
+    }
+}
+
+void Parser::count_elements(Variable& variable, Loc open) {
+    Symbol& symbol = *variable.symbol;
+    const int given = static_cast<int>(variable.elements.size());
+    const std::string has = "array " + quoted(symbol.name) + " has " +
+                            std::to_string(symbol.array_length) + " elements, but ";
+    if (given == 0) {
+        messages_.error(open, "an array has at least one element");
     } else if (symbol.array_length == ast::unsized_array) {
         symbol.array_length = given;
     } else if (symbol.array_length < given) {
-        messages_.error(open.loc, "array " + quoted(symbol.name) + " has " +
-                                      std::to_string(symbol.array_length) + " elements, but " +
-                                      std::to_string(given) + " are given");
+        messages_.warning(open, has + std::to_string(given) + " are given; the last are left out");
+        variable.elements.resize(static_cast<std::size_t>(symbol.array_length));
     } else if (symbol.array_length > given) {
-        messages_.warning(open.loc, "array " + quoted(symbol.name) + " has " +
-                                        std::to_string(symbol.array_length) +
-                                        " elements, but only " + std::to_string(given) +
-                                        " given; the rest is 0");
+        messages_.warning(open, has + "only " + std::to_string(given) + " given; the rest is 0");
     }
+}
+
+// color c = {1, 0, 0}: the list stands for a value in parentheses.
+void Parser::list_for_value(Variable& variable, Loc open) {
+    const Symbol& symbol = *variable.symbol;
+    const std::size_t given = variable.elements.size();
+    const bool is_tuple =
+        (is_triple(symbol.type) && given == 3) || (symbol.type == Type::Matrix && given == 16);
+    if (!is_tuple && given != 1) {
+        messages_.error(open,
+                        quoted(symbol.name) + " is not an array, but is given a list of values");
+        return;
+    }
+    messages_.warning(open, quoted(symbol.name) +
+                                " is not an array; the list is taken as the value in parentheses");
+    variable.init = variable.elements[0];
+    if (is_tuple) {
+        variable.init = new_expr(ExprKind::Tuple, open);
+        variable.init->args = variable.elements;
+    }
+    variable.elements.clear();
+    variable.has_elements = false;
 }
 
 std::unique_ptr<ast::File> parse(const std::vector<Token>& tokens, Messages& messages) {

@@ -24,7 +24,7 @@ constexpr BinaryRank ranks[] = {
     {Tok::NotEqual, Op::Ne, 3}, {Tok::Less, Op::Lt, 4},         {Tok::LessEqual, Op::Le, 4},
     {Tok::Greater, Op::Gt, 4},  {Tok::GreaterEqual, Op::Ge, 4}, {Tok::Plus, Op::Add, 5},
     {Tok::Minus, Op::Sub, 5},   {Tok::Caret, Op::Cross, 6},     {Tok::Star, Op::Mul, 7},
-    {Tok::Slash, Op::Div, 7},   {Tok::Dot, Op::Dot, 8}};
+    {Tok::Slash, Op::Div, 7},   {Tok::Percent, Op::Div, 7},     {Tok::Dot, Op::Dot, 8}};
 
 const BinaryRank* binary_rank(Tok kind) {
     for (const BinaryRank& r : ranks) {
@@ -109,7 +109,12 @@ Expr* Parser::binary(int lowest) {
                             base::Code::Limit);
             throw SyntaxError{};
         }
-        Expr* e = new_expr(ExprKind::Binary, take().loc);
+        const bool is_mod = r->token == Tok::Percent;
+        Expr* e = new_expr(is_mod ? ExprKind::Call : ExprKind::Binary, take().loc);
+        if (is_mod) {
+            messages_.warning(e->loc, "there is no '%' in the Shading Language; mod() is taken");
+            e->text = "mod";
+        }
         e->op = r->op;
         Expr* right = binary(r->rank + 1);
         e->args = {left, right};
@@ -121,7 +126,7 @@ Expr* Parser::binary(int lowest) {
 // unary = ( "-" | "!" | "+" ) unary | cast | primary
 Expr* Parser::unary() {
     const Nest nest(*this);
-    if (type_of_word(peek().kind)) {
+    if (type_at()) {
         return cast();
     }
     if (is(Tok::Minus) || is(Tok::Not)) {
@@ -155,6 +160,30 @@ Expr* Parser::cast() {
     return e;
 }
 
+// "(" type ")" before an operand, as C writes a cast
+bool Parser::at_c_cast() const {
+    const bool is_type = is(Tok::LeftParen) && type_of_word(peek(1).kind) &&
+                         !type_words_as_names_.contains(peek(1).text);
+    return is_type && is(Tok::RightParen, 2) &&
+           (is(Tok::Name, 3) || is(Tok::Number, 3) || is(Tok::LeftParen, 3));
+}
+
+Expr* Parser::c_cast() {
+    const Nest nest(*this);
+    const Token& open = take();
+    const Token& word = take();
+    take(); // ")"
+    messages_.warning(open.loc, "a cast is written without parentheses: " + std::string(word.text) +
+                                    " value");
+    Expr* e = new_expr(ExprKind::Cast, word.loc);
+    e->type = *type_of_word(word.kind);
+    if (e->type == Type::Void) {
+        fail(word, "a value cannot be void");
+    }
+    e->args = {unary()};
+    return e;
+}
+
 // primary = NUMBER | STRING { STRING } | IDENT [ "[" expr "]" ] | call | "(" expr ")" | triple |
 // sixteen
 Expr* Parser::primary() {
@@ -167,11 +196,12 @@ Expr* Parser::primary() {
     }
     case Tok::Text:
         return string_literal();
-    case Tok::Name:
-        return name_or_call();
     case Tok::LeftParen:
-        return parenthesised();
+        return at_c_cast() ? c_cast() : parenthesised();
     default:
+        if (is_name()) {
+            return name_or_call();
+        }
         fail(peek(), "expected an expression");
     }
 }
@@ -206,7 +236,7 @@ Expr* Parser::parenthesised() {
     return e;
 }
 
-// IDENT [ "[" expr "]" ] | call
+// IDENT [ "[" expr "]" ] | call; a second bracket picks a component, or a texture's channel
 Expr* Parser::name_or_call() {
     const Token& name = take();
     if (is(Tok::LeftParen)) {
@@ -218,6 +248,10 @@ Expr* Parser::name_or_call() {
         e->kind = ExprKind::Index;
         e->args.push_back(expr());
         expect(Tok::RightBracket, "after an index");
+        if (accept(Tok::LeftBracket)) {
+            e->args.push_back(expr());
+            expect(Tok::RightBracket, "after an index");
+        }
     }
     return e;
 }

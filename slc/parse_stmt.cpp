@@ -7,6 +7,7 @@
 namespace slc {
 
 using ast::Expr;
+using ast::ExprKind;
 using ast::StmtKind;
 
 ast::Stmt* Parser::new_stmt(StmtKind kind, Loc loc) {
@@ -75,12 +76,16 @@ ast::Stmt* Parser::statement_at() {
     default:
         break;
     }
-    if (type_of_word(peek().kind)) {
+    if (type_at()) {
         return typed_statement();
     }
     if (is(Tok::Name) && peek().text == "gather" && is(Tok::LeftParen, 1)) {
         return gather_statement();
     }
+    if (is(Tok::Name) && peek().text == "do" && is(Tok::LeftBrace, 1)) {
+        return do_statement();
+    }
+    foreign_type();
     return at_function_def() ? nested_function() : expression_statement();
 }
 
@@ -103,7 +108,7 @@ ast::Stmt* Parser::typed_statement() {
 bool Parser::at_function_def() const {
     std::size_t i = 0;
     i += is(Tok::WordUniform, i) || is(Tok::WordVarying, i) ? 1 : 0;
-    i += type_of_word(peek(i).kind) ? 1 : 0;
+    i += type_at(i) ? 1 : 0;
     if (!is(Tok::Name, i) || !is(Tok::LeftParen, i + 1)) {
         return false;
     }
@@ -144,16 +149,68 @@ ast::Stmt* Parser::declaration() {
     return s;
 }
 
-// expr ";"
-ast::Stmt* Parser::expression_statement() {
-    ast::Stmt* s = new_stmt(StmtKind::Expression, peek().loc);
-    s->exprs.push_back(expr());
-    expect(Tok::Semicolon, "after an expression");
-    return s;
+// Two words in a row, or a word before a type: a declaration in another language.
+void Parser::foreign_type() {
+    if (!is(Tok::Name) || !(is(Tok::Name, 1) || type_at(1))) {
+        return;
+    }
+    fail(peek(1), quoted(peek().text) + " is no type of the Shading Language, which has float, " +
+                      "color, point, vector, normal, matrix and string");
 }
 
-// cond = "(" expr ")"
+// expr ";"; several, separated by commas, as C would take them
+ast::Stmt* Parser::expression_statement() {
+    ast::Stmt* s = new_stmt(StmtKind::Expression, peek().loc);
+    s->exprs.push_back(statement_expr());
+    if (!is(Tok::Comma)) {
+        expect(Tok::Semicolon, "after an expression");
+        return s;
+    }
+    ast::Stmt* block = new_stmt(StmtKind::Block, s->loc);
+    block->body.push_back(s);
+    while (accept(Tok::Comma)) {
+        block->body.push_back(new_stmt(StmtKind::Expression, peek().loc));
+        block->body.back()->exprs.push_back(statement_expr());
+    }
+    expect(Tok::Semicolon, "after an expression");
+    return block;
+}
+
+// expr where its value is not used: there x++ can only mean x += 1.
+Expr* Parser::statement_expr() {
+    const auto twice = [&](std::size_t i) {
+        return (is(Tok::Plus, i) && is(Tok::Plus, i + 1)) ||
+               (is(Tok::Minus, i) && is(Tok::Minus, i + 1));
+    };
+    const auto ends = [&](std::size_t i) {
+        return is(Tok::Semicolon, i) || is(Tok::RightParen, i) || is(Tok::Comma, i);
+    };
+    const bool before = twice(0) && is_name(2) && ends(3);
+    if (!before && !(is_name() && twice(1) && ends(3))) {
+        return expr();
+    }
+    const Token& first = take();
+    const Token& second = take();
+    const Token& third = take();
+    Expr* e = new_expr(ExprKind::Assign, first.loc);
+    e->op = second.kind == Tok::Plus ? Op::Add : Op::Sub;
+    Expr* name = new_expr(ExprKind::Name, before ? third.loc : first.loc);
+    name->text = before ? third.text : first.text;
+    Expr* one = new_expr(ExprKind::Number, second.loc);
+    one->number = 1;
+    e->args = {name, one};
+    messages_.warning(second.loc, "the Shading Language writes " + name->text +
+                                      (e->op == Op::Add ? " += 1" : " -= 1"));
+    return e;
+}
+
+// cond = "(" expr ")"; a string before it ("any", "all") told other renderers how points go
+// together
 Expr* Parser::condition() {
+    if (is(Tok::Text) && is(Tok::LeftParen, 1)) {
+        messages_.warning(peek().loc, "every point decides for itself; this word is left out");
+        take();
+    }
     expect(Tok::LeftParen, "before a condition");
     Expr* e = expr();
     expect(Tok::RightParen, "after a condition");
@@ -177,6 +234,44 @@ ast::Stmt* Parser::while_statement() {
     s->exprs.push_back(condition());
     s->body.push_back(statement());
     return s;
+}
+
+// "do" block "while" cond ";": a while loop whose condition is first asked after the body
+ast::Stmt* Parser::do_statement() {
+    const Loc loc = take().loc;
+    const auto name = [&] {
+        Expr* e = new_expr(ExprKind::Name, loc);
+        e->text = "do first"; // no name that a shader could have
+        return e;
+    };
+    const auto number = [&](double value) {
+        Expr* e = new_expr(ExprKind::Number, loc);
+        e->number = value;
+        return e;
+    };
+    ast::Stmt* first = new_stmt(StmtKind::Declare, loc);
+    ast::Symbol& symbol = file_->symbols.emplace_back();
+    symbol.name = "do first";
+    symbol.loc = loc;
+    ast::Variable variable;
+    variable.symbol = &symbol;
+    variable.init = number(1);
+    first->variables.push_back(variable);
+    ast::Stmt* done = new_stmt(StmtKind::Expression, loc);
+    done->exprs.push_back(new_expr(ExprKind::Assign, loc));
+    done->exprs[0]->args = {name(), number(0)};
+    ast::Stmt* repeated = new_stmt(StmtKind::Block, loc);
+    repeated->body = {done, statement()};
+    expect(Tok::WordWhile, "after the body of 'do'");
+    ast::Stmt* loop = new_stmt(StmtKind::While, loc);
+    loop->exprs.push_back(new_expr(ExprKind::Binary, loc));
+    loop->exprs[0]->op = Op::Or;
+    loop->exprs[0]->args = {name(), condition()};
+    loop->body.push_back(repeated);
+    expect(Tok::Semicolon, "after the condition of 'do'");
+    ast::Stmt* block = new_stmt(StmtKind::Block, loc);
+    block->body = {first, loop};
+    return block;
 }
 
 // "for" "(" [ expr-list ] ";" [ expr ] ";" [ expr-list ] ")" statement
@@ -250,6 +345,10 @@ ast::Stmt* Parser::light_statement(StmtKind kind, std::size_t min_args, std::siz
     expect(Tok::LeftParen, "after " + quoted(word.text));
     s->exprs = expr_list(Tok::RightParen);
     expect(Tok::RightParen, "after the arguments of " + quoted(word.text));
+    if (kind == StmtKind::Solar && s->exprs.size() == 1) {
+        messages_.warning(word.loc, "'solar' takes an axis and an angle; the angle is taken as 0");
+        s->exprs.push_back(new_expr(ExprKind::Number, word.loc));
+    }
     const std::size_t n = s->exprs.size();
     const bool fits = kind == StmtKind::Illuminance ? n >= min_args && n <= max_args
                                                     : n == min_args || n == max_args;
@@ -283,7 +382,7 @@ std::vector<Expr*> Parser::expr_list(Tok end) {
         return list;
     }
     do {
-        list.push_back(expr());
+        list.push_back(statement_expr());
     } while (accept(Tok::Comma));
     return list;
 }

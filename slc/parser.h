@@ -6,6 +6,8 @@
 
 #include "slc/parse.h"
 
+#include <set>
+
 namespace slc {
 
 class Parser {
@@ -35,6 +37,10 @@ private:
     [[nodiscard]] bool is(Tok kind, std::size_t ahead = 0) const {
         return peek(ahead).kind == kind;
     }
+    // Type a word at this place stands for, or nothing. vector, normal and matrix were ordinary
+    // names in 3.1, and shaders of its time call variables so.
+    [[nodiscard]] std::optional<Type> type_at(std::size_t ahead = 0) const;
+    [[nodiscard]] bool is_name(std::size_t ahead = 0) const;
     const Token& take();
     bool accept(Tok kind);
     const Token& expect(Tok kind, std::string_view where);
@@ -57,12 +63,18 @@ private:
         bool is_output = false;
         std::optional<Detail> detail;
         std::optional<Type> type;
+        int array_length = 0; // type[N] name
         Loc loc;
     };
     TypeSpec typespec(bool output_allowed);
+    void qualifiers(TypeSpec& spec, bool output_allowed);
+    void later_language();
+    ast::Expr* default_value(const ast::Symbol& symbol);
     ast::Symbol* new_symbol(const TypeSpec& spec, ast::SymbolKind kind, bool unsized_allowed);
     void initialiser(ast::Variable& variable);
     void array_init(ast::Variable& variable);
+    void count_elements(ast::Variable& variable, Loc open);
+    void list_for_value(ast::Variable& variable, Loc open);
     int array_length(bool unsized_allowed);
 
     // Statements, parse_stmt.cpp
@@ -75,6 +87,8 @@ private:
     ast::Stmt* nested_function();
     ast::Stmt* declaration();
     ast::Stmt* expression_statement();
+    ast::Expr* statement_expr();
+    void foreign_type();
     ast::Stmt* if_statement();
     ast::Stmt* while_statement();
     ast::Stmt* for_statement();
@@ -82,6 +96,7 @@ private:
     ast::Stmt* return_statement();
     ast::Stmt* light_statement(ast::StmtKind kind, std::size_t min_args, std::size_t max_args);
     ast::Stmt* gather_statement();
+    ast::Stmt* do_statement();
     ast::Expr* condition();
     std::vector<ast::Expr*> expr_list(Tok end);
 
@@ -91,6 +106,8 @@ private:
     ast::Expr* binary(int lowest);
     ast::Expr* unary();
     ast::Expr* cast();
+    [[nodiscard]] bool at_c_cast() const;
+    ast::Expr* c_cast();
     ast::Expr* primary();
     ast::Expr* parenthesised();
     ast::Expr* name_or_call();
@@ -103,6 +120,7 @@ private:
     Messages& messages_;
     std::unique_ptr<ast::File> file_;
     std::size_t pos_ = 0;
+    std::set<std::string_view> type_words_as_names_; // declared in this definition
     int depth_ = 0;
     bool stopped_ = false;
 };

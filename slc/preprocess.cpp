@@ -103,13 +103,24 @@ bool relay(std::string_view err, Messages& messages) {
         }
         const Loc loc{messages.sources().add(message->file), message->line, message->col};
         // sl.md 1.2: unknown directives are only warned about.
-        const bool unknown_directive = message->text.starts_with("invalid preprocessing directive");
-        if (message->kind == "warning" || unknown_directive) {
+        // Words that do not paste to one stand side by side, as with older preprocessors.
+        const bool harmless = message->text.starts_with("invalid preprocessing directive") ||
+                              message->text.starts_with("pasting ");
+        constexpr std::string_view not_found = ": No such file or directory";
+        if (message->kind == "warning" || harmless) {
             messages.warning(loc, message->text);
-        } else {
-            messages.error(loc, message->text, base::Code::Syntax);
-            ok = false;
+            continue;
         }
+        ok = false;
+        if (message->text.ends_with(not_found)) {
+            const auto name = message->text.substr(0, message->text.size() - not_found.size());
+            messages.error(loc,
+                           "included file " + quoted(name) +
+                               " is not found; -I names the folder it is in",
+                           base::Code::NoFile);
+            continue;
+        }
+        messages.error(loc, message->text, base::Code::Syntax);
     }
     return ok;
 }
@@ -161,7 +172,8 @@ std::optional<std::string> preprocess(std::string_view text, const std::string& 
         return std::nullopt;
     }
     if (result.exit_code != 0 && messages.num_errors() == 0 &&
-        result.err.find("invalid preprocessing directive") == std::string::npos) {
+        result.err.find("invalid preprocessing directive") == std::string::npos &&
+        result.err.find(": error: pasting ") == std::string::npos) {
         messages.system_error("the preprocessor failed: " + result.err.substr(0, 500),
                               base::Code::System);
         return std::nullopt;

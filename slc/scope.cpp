@@ -3,6 +3,8 @@
 
 #include "slc/builtins.h"
 
+#include <iterator>
+
 namespace slc {
 
 using ast::Symbol;
@@ -64,6 +66,18 @@ Symbol* Scopes::find_outer(std::string_view name) const {
     }
     const auto it = globals_.find(name);
     return it == globals_.end() ? nullptr : it->second;
+}
+
+Scopes::Inner Scopes::leave_for_file() {
+    Inner inner(std::make_move_iterator(levels_.begin() + 1),
+                std::make_move_iterator(levels_.end()));
+    levels_.resize(1);
+    return inner;
+}
+
+void Scopes::come_back(Inner inner) {
+    levels_.insert(levels_.end(), std::make_move_iterator(inner.begin()),
+                   std::make_move_iterator(inner.end()));
 }
 
 bool Scopes::declare(std::string_view name, Symbol* symbol) {

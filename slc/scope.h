@@ -31,6 +31,9 @@ public:
     [[nodiscard]] ast::Symbol* find_outer(std::string_view name) const;
     // False when the innermost level already has the name.
     bool declare(std::string_view name, ast::Symbol* symbol);
+    void replace(std::string_view name, ast::Symbol* symbol) {
+        levels_.back().variables[name] = symbol;
+    }
 
     void declare_function(ast::Function* function) { levels_.back().functions.push_back(function); }
     // Innermost first; within a level the latest first.
@@ -45,6 +48,14 @@ private:
         std::unordered_map<std::string_view, ast::Symbol*> variables;
         std::vector<ast::Function*> functions;
     };
+
+public:
+    // All levels but that of the file are put aside, and taken up again.
+    using Inner = std::vector<Level>;
+    [[nodiscard]] Inner leave_for_file();
+    void come_back(Inner inner);
+
+private:
     std::vector<Level> levels_;
     std::unordered_map<std::string_view, ast::Symbol*> globals_;
 };

@@ -113,3 +113,18 @@ V FN(indirectdiffuse)(CALL, V p, V n, F samples, const sl_value* values, int num
     NO_RAYS("indirectdiffuse", "the result is black");
     return FN(f_to_3)(K(0));
 }
+V FN(caustic)(CALL, V p, V n) {
+    (void)p, (void)n;
+    report(call, "caustic(): there are no photon maps; the result is black");
+    return FN(f_to_3)(K(0));
+}
+V FN(photonmap)(CALL, sl_string map, V p, V n, const sl_value* values, int num) {
+    (void)map, (void)p, (void)n, (void)values, (void)num;
+    report(call, "photonmap(): there are no photon maps; the result is black");
+    return FN(f_to_3)(K(0));
+}
+V FN(subsurface)(CALL, V p, V n, const sl_value* values, int num) {
+    (void)p, (void)n, (void)values, (void)num;
+    report(call, "subsurface(): there are no photon maps; the result is black");
+    return FN(f_to_3)(K(0));
+}

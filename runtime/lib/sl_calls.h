@@ -130,6 +130,9 @@ V FN(indirectdiffuse)(CALL, V p, V n, F samples, const sl_value* values, int num
     OUT(indirectdiffuse);
 V FN(indirectdiffuse_map)(CALL, sl_string map, V n, const sl_value* values, int num)
     OUT(indirectdiffuse_map);
+V FN(caustic)(CALL, V p, V n) OUT(caustic);
+V FN(photonmap)(CALL, sl_string map, V p, V n, const sl_value* values, int num) OUT(photonmap);
+V FN(subsurface)(CALL, V p, V n, const sl_value* values, int num) OUT(subsurface);
 F FN(raylevel)(CALL) OUT(raylevel);
 F FN(isshadowray)(CALL) OUT(isshadowray);
 F FN(isindirectray)(CALL) OUT(isindirectray);

@@ -214,6 +214,9 @@ CASE(occlusion_map, occlusion_map, 7, 1, R(FN(occlusion_map)(PASS, "m", A3(0), A
 CASE(occlusion_map_2, occlusion_map_2, 7, 1, R(FN(occlusion_map_2)(PASS, "m", A3(0), A3(3), A(6), A(6), 0, 0)))
 CASE(indirectdiffuse, indirectdiffuse, 7, 3, R3(FN(indirectdiffuse)(PASS, A3(0), A3(3), A(6), 0, 0)))
 CASE(indirectdiffuse_map, indirectdiffuse_map, 3, 3, R3(FN(indirectdiffuse_map)(PASS, "m", A3(0), 0, 0)))
+CASE(caustic, caustic, 6, 3, R3(FN(caustic)(PASS, A3(0), A3(3))))
+CASE(photonmap, photonmap, 6, 3, R3(FN(photonmap)(PASS, "m", A3(0), A3(3), 0, 0)))
+CASE(subsurface, subsurface, 6, 3, R3(FN(subsurface)(PASS, A3(0), A3(3), 0, 0)))
 #define MAP_FILL                                                                                   \
     sl_string key = "fill";                                                                        \
     float fill = 0.25f;                                                                            \

@@ -26,3 +26,5 @@ static int colour_space(sl_string name) {
 
 #define SL_BODY "colour_body.h"
 #include "sl_both_worlds.h"
+#define SL_BODY "diff_colour_body.h"
+#include "sl_both_worlds.h"

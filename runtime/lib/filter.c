@@ -38,3 +38,5 @@ static slf slv_number_(const sl_value* value) {
 
 #define SL_BODY "filter_body.h"
 #include "sl_both_worlds.h"
+#define SL_BODY "diff_filter_body.h"
+#include "sl_both_worlds.h"

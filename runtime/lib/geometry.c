@@ -48,3 +48,5 @@ static slu3 slu_point_var_(const sl_call* call, int id) {
 
 #define SL_BODY "geometry_body.h"
 #include "sl_both_worlds.h"
+#define SL_BODY "diff_geometry_body.h"
+#include "sl_both_worlds.h"

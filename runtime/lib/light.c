@@ -142,6 +142,24 @@ slv slv_specularbrdf(const sl_call* call, sli mask, slv l, slv n, slv v, slf rou
     return slv_f_to_3(highlight(l, n, v, exponent_of(roughness, exponent_scale(call))));
 }
 
+/* Its difference: the power of a clamped cosine of two directions, each step by its own
+ * difference. */
+slv slv_specularbrdf_d(const sl_call* call, sli mask, slv l, slv n, slv v, slf roughness, slv dl,
+                       slv dn, slv dv, slf droughness) {
+    (void)mask;
+    const float scale = exponent_scale(call);
+    const slv middle = slv_add_3(l, v), dmiddle = slv_add_3(dl, dv);
+    const slv h = slv_normalize(middle), dh = slv_normalize_d(middle, dmiddle);
+    const slf along = slv_dot_3(n, h), dalong = slv_dot_3_d(n, h, dn, dh), zero = {0};
+    const slf cosine = slv_max_f(zero, along), dcosine = slv_max_f_d(zero, along, zero, dalong);
+    const slf least = slv_spread_f(1e-6f);
+    const slf rough = slv_max_f(roughness, least);
+    const slf drough = slv_max_f_d(roughness, least, droughness, zero);
+    const slf exponent = exponent_of(roughness, scale);
+    const slf dexponent = -exponent * drough / (rough + drough);
+    return slv_f_to_3(slv_pow_d(cosine, exponent, dcosine, dexponent));
+}
+
 slv slv_specular(const sl_call* call, sli mask, slv n, slv v, slf roughness) {
     sl_light_loop loop;
     slv sum = slv_f_to_3((slf){0});
@@ -204,4 +222,13 @@ slu3 slu_phong(const sl_call* call, slu3 n, slu3 v, float size) {
 slu3 slu_specularbrdf(const sl_call* call, slu3 l, slu3 n, slu3 v, float roughness) {
     return of_first(call, slv_specularbrdf(call, first_live(call), slv_spread_3(l), slv_spread_3(n),
                                            slv_spread_3(v), slv_spread_f(roughness)));
+}
+
+slu3 slu_specularbrdf_d(const sl_call* call, slu3 l, slu3 n, slu3 v, float roughness, slu3 dl,
+                        slu3 dn, slu3 dv, float droughness) {
+    return of_first(call, slv_specularbrdf_d(call, first_live(call), slv_spread_3(l),
+                                             slv_spread_3(n), slv_spread_3(v),
+                                             slv_spread_f(roughness), slv_spread_3(dl),
+                                             slv_spread_3(dn), slv_spread_3(dv),
+                                             slv_spread_f(droughness)));
 }

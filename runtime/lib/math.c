@@ -60,3 +60,5 @@ static slf slv_huge_angle_(slf x, sli huge, slf r, slf* tail, sli* quadrant) {
 
 #define SL_BODY "math_body.h"
 #include "sl_both_worlds.h"
+#define SL_BODY "diff_math_body.h"
+#include "sl_both_worlds.h"

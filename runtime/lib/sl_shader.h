@@ -6,7 +6,8 @@
  * Two worlds share one text: `slu_<name>` works on uniform values (float, slu3, slum, sl_string,
  * int conditions) and `slv_<name>` on lanes (slf, slv, slm, sls, sli masks of 0 and -1).
  * sl_inline.h holds what is inlined, for both; sl_calls.h declares the rest, which lives in
- * libsl_lanes8.a and libsl_lanes4.a under names that end in the width. Suffixes of operations: _f
+ * libsl_lanes8.a and libsl_lanes4.a under names that end in the width. sl_diff_inline.h and
+ * sl_diff_calls.h are the same for differences to auxiliary points. Suffixes of operations: _f
  * float, _3 triple, _m matrix, _s string, _i int or mask.
  */
 #ifndef PERIGEE_SL_SHADER_H
@@ -21,8 +22,12 @@ extern "C" {
 #include "sl_lanes.h"
 #define SL_BODY "sl_inline.h"
 #include "sl_both_worlds.h"
+#define SL_BODY "sl_diff_inline.h"
+#include "sl_both_worlds.h"
 #include "sl_packet.h"
 #define SL_BODY "sl_calls.h"
+#include "sl_both_worlds.h"
+#define SL_BODY "sl_diff_calls.h"
 #include "sl_both_worlds.h"
 #include "sl_lights.h"
 /* clang-format on */

@@ -48,3 +48,5 @@ static const basis* find_basis(sl_string name, int* inverse) {
 
 #define SL_BODY "spline_body.h"
 #include "sl_both_worlds.h"
+#define SL_BODY "diff_spline_body.h"
+#include "sl_both_worlds.h"

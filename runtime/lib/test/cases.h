@@ -250,3 +250,4 @@ CASE(textureinfo, textureinfo, 0, 1, F x = K(5); sl_value o = {SL_TYPE_float, si
 #undef F2
 #undef F3
 /* clang-format on */
+#include "diff_cases.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0
- * The noise of noise_body.h written for one processor: AVX2 intrinsics, everything inlined into the
+ * The noise of noise_lattice.h written for one processor: AVX2 intrinsics, everything inlined into the
  * octave loop. The limit that the library's form is measured against.
  */
 #include "noise_loop.h"

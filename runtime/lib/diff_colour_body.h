@@ -28,11 +28,10 @@ SL_INLINE F FN(ramp_at_)(F k, float start, float end, float low) {
 SL_INLINE F FN(ramp_change_)(F k, F dk, float start, float end, float turns, float low) {
     const F k1 = k + dk, none = K(0);
     const F inner = FN(min_f_d)(k - start, end - k, dk, -dk);
-    const F near =
-        FN(clamp_f_d)(FN(min_f)(k - start, end - k), K(low), K(1), inner, none, none);
+    const F near = FN(clamp_f_d)(FN(min_f)(k - start, end - k), K(low), K(1), inner, none, none);
     const I wraps = LT(k1, none) | LE(K(turns), k1);
-    const F jump = FN(ramp_at_)(FN(wrap_)(k1, turns), start, end, low) -
-                   FN(ramp_at_)(k, start, end, low);
+    const F jump =
+        FN(ramp_at_)(FN(wrap_)(k1, turns), start, end, low) - FN(ramp_at_)(k, start, end, low);
     return SEL(wraps, jump, near);
 }
 

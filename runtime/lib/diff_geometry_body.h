@@ -95,8 +95,7 @@ V FN(transform_to_d)(CALL, sl_string to, V p, V dp) {
 }
 V FN(transform_from_m_d)(CALL, sl_string from, M m, V p, M dm, V dp) {
     const V in_current = FN(transform_from_to)(PASS, from, NULL, p);
-    return FN(transform_m_d)(m, in_current, dm,
-                             FN(transform_from_to_d)(PASS, from, NULL, p, dp));
+    return FN(transform_m_d)(m, in_current, dm, FN(transform_from_to_d)(PASS, from, NULL, p, dp));
 }
 V FN(vtransform_from_m_d)(CALL, sl_string from, M m, V v, M dm, V dv) {
     const M space = FN(space_)(PASS, from, NULL);
@@ -169,7 +168,8 @@ V FN(refract_d)(V i, V n, F eta, V di, V dn, F deta) {
     const V zero = FN(f_to_3)(K(0));
     const V arrives = FN(select_3)(none1, zero, FN(add_3)(t, dt));
     const V r = FN(select_3)(none, arrives, FN(select_3)(none1, FN(neg_3)(t), dt));
-    return FN(finite_3_)(r);
+    const I still = FN(eq_3)(di, zero) & FN(eq_3)(dn, zero) & EQ(deta, K(0));
+    return FN(select_3)(still, zero, FN(finite_3_)(r));
 }
 
 /* The reference normal is the batch's Ng at the main point for all three: facing forward is one

@@ -54,7 +54,8 @@ F FN(asin_d)(F x, F dx) {
     const F beside = SEL(none, zero, d * ((a + b) / SEL(none, one, sum)));
     const F sine = SEL(opposite, b * ca - a * cb, beside);
     const F straight = SEL(EQ(a, zero) & EQ(b, zero), d, sine);
-    return FN(atan2)(straight, ca * cb + a * b);
+    const F angle = FN(atan2)(FN(abs)(straight), ca * cb + a * b);
+    return FLOAT(BITS(angle) ^ (BITS(dx) & (int)0x80000000));
 }
 
 F FN(acos_d)(F x, F dx) {
@@ -180,11 +181,12 @@ SL_INLINE F FN(bell_)(F x) {
 F FN(erf_d)(F x, F dx) {
     const F h = 0.5f * dx, m = x + h, node = 0.774596669f * h, x1 = FN(moved_)(x, dx);
     const I near = LE(FN(abs)(dx) * (1.0f + FN(abs)(x)), K(0.5f));
-    const F mean = 0.277777778f * (FN(bell_)(m - node) + FN(bell_)(m + node)) +
-                   0.444444444f * FN(bell_)(m);
+    const F mean =
+        0.277777778f * (FN(bell_)(m - node) + FN(bell_)(m + node)) + 0.444444444f * FN(bell_)(m);
     F r = 1.12837917f * dx * mean;
     if (FN(any)(~near)) {
-        const I above = LT(K(0.5f), x) & LT(K(0.5f), x1), below = LT(x, K(-0.5f)) & LT(x1, K(-0.5f));
+        const I above = LT(K(0.5f), x) & LT(K(0.5f), x1),
+                below = LT(x, K(-0.5f)) & LT(x1, K(-0.5f));
         const F tails = FN(erfc)(FN(abs)(x)) - FN(erfc)(FN(abs)(x1));
         const F long_step = SEL(above, tails, SEL(below, -tails, FN(erf)(x1) - FN(erf)(x)));
         r = SEL(near, r, long_step);

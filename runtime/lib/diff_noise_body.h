@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0
- * Differences of the noise family (noise_lattice.h), one text per world; included by diff_noise.c. Within a
- * cell noise is a polynomial: its value and its changes by two steps u and v are carried together
- * through the sums over the corners, so that one hash of the lattice serves all three and steps
- * enter as factors, never as the difference of two positions. A step that leaves the cell and is
- * longer than NEAR_STEP is the difference of two values; a shorter one continues the polynomial,
+ * Differences of the noise family (noise_lattice.h), one text per world; included by diff_noise.c.
+ * Within a cell noise is a polynomial: its value and its changes by two steps u and v are carried
+ * together through the sums over the corners, so that one hash of the lattice serves all three and
+ * steps enter as factors, never as the difference of two positions. A step that leaves the cell and
+ * is longer than NEAR_STEP is the difference of two values; a shorter one continues the polynomial,
  * which agrees with its neighbour up to the third order. What holds for all: sl_diff_inline.h.
  */
 
@@ -68,13 +68,12 @@ SL_INLINE FN(three_) FN(corner3_2_)(I h, uint32_t c, FN(three_) x, FN(three_) y)
     return FN(three_of_)(FN(corner_2_)(h, c, x.at, y.at), FN(corner_2_)(h, c, x.u, y.u),
                          FN(corner_2_)(h, c, x.v, y.v));
 }
-SL_INLINE FN(three_)
-    FN(corner3_3_)(I h, uint32_t c, FN(three_) x, FN(three_) y, FN(three_) z) {
+SL_INLINE FN(three_) FN(corner3_3_)(I h, uint32_t c, FN(three_) x, FN(three_) y, FN(three_) z) {
     return FN(three_of_)(FN(corner_3_)(h, c, x.at, y.at, z.at), FN(corner_3_)(h, c, x.u, y.u, z.u),
                          FN(corner_3_)(h, c, x.v, y.v, z.v));
 }
-SL_INLINE FN(three_) FN(corner3_4_)(I h, uint32_t c, FN(three_) x, FN(three_) y, FN(three_) z,
-                                    FN(three_) t) {
+SL_INLINE FN(three_)
+    FN(corner3_4_)(I h, uint32_t c, FN(three_) x, FN(three_) y, FN(three_) z, FN(three_) t) {
     return FN(three_of_)(FN(corner_4_)(h, c, x.at, y.at, z.at, t.at),
                          FN(corner_4_)(h, c, x.u, y.u, z.u, t.u),
                          FN(corner_4_)(h, c, x.v, y.v, z.v, t.v));
@@ -102,13 +101,13 @@ SL_INLINE FN(three_)
     return FN(blend3_)(x->w, FN(corner3_3_)(x->lower ^ hash, c, x->f, y, z),
                        FN(corner3_3_)(x->upper ^ hash, c, FN(less_one_)(x->f), y, z));
 }
-SL_INLINE FN(three_) FN(face3_3_)(const FN(axis3_) * x, const FN(axis3_) * y, I hash, FN(three_) z,
-                                  uint32_t c) {
+SL_INLINE FN(three_)
+    FN(face3_3_)(const FN(axis3_) * x, const FN(axis3_) * y, I hash, FN(three_) z, uint32_t c) {
     return FN(blend3_)(y->w, FN(row3_3_)(x, y->lower ^ hash, y->f, z, c),
                        FN(row3_3_)(x, y->upper ^ hash, FN(less_one_)(y->f), z, c));
 }
-SL_INLINE FN(three_) FN(sum3_3_)(const FN(axis3_) * x, const FN(axis3_) * y, const FN(axis3_) * z,
-                                 uint32_t c) {
+SL_INLINE FN(three_)
+    FN(sum3_3_)(const FN(axis3_) * x, const FN(axis3_) * y, const FN(axis3_) * z, uint32_t c) {
     return FN(blend3_)(z->w, FN(face3_3_)(x, y, z->lower, z->f, c),
                        FN(face3_3_)(x, y, z->upper, FN(less_one_)(z->f), c));
 }
@@ -123,8 +122,8 @@ SL_INLINE FN(three_) FN(face3_4_)(const FN(axis3_) * x, const FN(axis3_) * y, I 
     return FN(blend3_)(y->w, FN(row3_4_)(x, y->lower ^ hash, y->f, z, t, c),
                        FN(row3_4_)(x, y->upper ^ hash, FN(less_one_)(y->f), z, t, c));
 }
-SL_INLINE FN(three_) FN(cube3_4_)(const FN(axis3_) * x, const FN(axis3_) * y,
-                                  const FN(axis3_) * z, I hash, FN(three_) t, uint32_t c) {
+SL_INLINE FN(three_) FN(cube3_4_)(const FN(axis3_) * x, const FN(axis3_) * y, const FN(axis3_) * z,
+                                  I hash, FN(three_) t, uint32_t c) {
     return FN(blend3_)(z->w, FN(face3_4_)(x, y, z->lower ^ hash, z->f, t, c),
                        FN(face3_4_)(x, y, z->upper ^ hash, FN(less_one_)(z->f), t, c));
 }
@@ -152,11 +151,11 @@ typedef struct FN(cell4_) {
 static const uint32_t FN(primes_)[4] = {NOISE_P0, NOISE_P1, NOISE_P2, NOISE_P3};
 
 /* One axis whose index and offset are known. */
-SL_INLINE FN(axis_)
-    FN(axis_at_)(F whole, F f, F period, int dims, int k, int periodic) {
+SL_INLINE FN(axis_) FN(axis_at_)(F whole, F f, F period, int dims, int k, int periodic) {
     const uint32_t seed = k == 0 ? NOISE_SEED((uint32_t)dims) : 0;
-    FN(axis_) r = periodic ? FN(closed_axis_)(whole, period, FN(primes_)[k], seed)
-                           : FN(open_axis_)(whole, FN(primes_)[k], seed);
+    FN(axis_)
+    r = periodic ? FN(closed_axis_)(whole, period, FN(primes_)[k], seed)
+                 : FN(open_axis_)(whole, FN(primes_)[k], seed);
     r.f = f;
     r.w = FN(fade_)(f);
     return r;
@@ -177,9 +176,9 @@ SL_INLINE FN(cell4_) FN(cell_after_)(const FN(cell4_) * from, const FN(place4_) 
     NOISE_UNROLL for (int k = 0; k < dims; k++) {
         const F sum = from->axis[k].f + d->a[k], crossed = FN(floor)(sum);
         r.whole[k] = from->whole[k] + crossed;
-        r.axis[k] = FN(axis_at_)(r.whole[k], sum - crossed,
-                                 periodic ? p->period[k] + d->period[k] : p->period[k], dims, k,
-                                 periodic);
+        r.axis[k] =
+            FN(axis_at_)(r.whole[k], sum - crossed,
+                         periodic ? p->period[k] + d->period[k] : p->period[k], dims, k, periodic);
     }
     return r;
 }
@@ -204,7 +203,7 @@ SL_INLINE I FN(far_step_)(const FN(cell4_) * from, const FN(place4_) * p, const 
 }
 
 SL_INLINE F FN(sum_n_)(const FN(cell4_) * at, int dims, uint32_t c) {
-    const FN(axis_) *x = at->axis;
+    const FN(axis_)* x = at->axis;
     return dims == 1   ? FN(sum_1_)(x[0], c)
            : dims == 2 ? FN(sum_2_)(x[0], x[1], c)
            : dims == 3 ? FN(sum_3_)(x[0], x[1], x[2], c)
@@ -242,8 +241,8 @@ SL_INLINE void FN(noise_step_)(const FN(place4_) * p, const FN(place4_) * d, int
     static const uint32_t multipliers[3] = {NOISE_C0, NOISE_C1, NOISE_C2};
     const FN(cell4_) from = FN(cell_around_)(p, dims, periodic);
     FN(axis3_) axis[4];
-    NOISE_UNROLL for (int k = 0; k < dims; k++)
-        axis[k] = FN(moving_axis_)(from.axis[k], d->a[k], d->a[k]);
+    NOISE_UNROLL for (int k = 0; k < dims; k++) axis[k] =
+        FN(moving_axis_)(from.axis[k], d->a[k], d->a[k]);
     const I far = FN(far_step_)(&from, p, d, dims, periodic);
     const int any_far = FN(any)(far);
     const FN(cell4_) to = any_far ? FN(cell_after_)(&from, p, d, dims, periodic) : from;

@@ -102,8 +102,7 @@ F FN(spline_f_d)(sl_string name, F x, const F* knots, int n, F dx) {
     const basis* b = find_basis(name, &inverse);
     if (n < 4)
         return K(0);
-    return inverse ? FN(solve_change_)(b, x, dx, knots, n)
-                   : FN(spline_change_)(b, x, dx, knots, n);
+    return inverse ? FN(solve_change_)(b, x, dx, knots, n) : FN(spline_change_)(b, x, dx, knots, n);
 }
 
 V FN(spline_3_d)(sl_string name, F x, const V* knots, int n, F dx) {

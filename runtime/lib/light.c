@@ -226,9 +226,8 @@ slu3 slu_specularbrdf(const sl_call* call, slu3 l, slu3 n, slu3 v, float roughne
 
 slu3 slu_specularbrdf_d(const sl_call* call, slu3 l, slu3 n, slu3 v, float roughness, slu3 dl,
                         slu3 dn, slu3 dv, float droughness) {
-    return of_first(call, slv_specularbrdf_d(call, first_live(call), slv_spread_3(l),
-                                             slv_spread_3(n), slv_spread_3(v),
-                                             slv_spread_f(roughness), slv_spread_3(dl),
-                                             slv_spread_3(dn), slv_spread_3(dv),
-                                             slv_spread_f(droughness)));
+    return of_first(
+        call, slv_specularbrdf_d(call, first_live(call), slv_spread_3(l), slv_spread_3(n),
+                                 slv_spread_3(v), slv_spread_f(roughness), slv_spread_3(dl),
+                                 slv_spread_3(dn), slv_spread_3(dv), slv_spread_f(droughness)));
 }

@@ -162,8 +162,8 @@ SL_INLINE F FN(sqrt_d)(F a, F d) {
     const I inside = FN(le_f)(zero, a) & FN(le_f)(zero, b);
     const F sum = FN(root_f)(from) + FN(root_f)(to);
     const I none = FN(eq_f)(sum, zero);
-    return FN(finite_)(FN(select_f)(none, zero, FN(select_f)(inside, d, to - from) /
-                                                    FN(select_f)(none, one, sum)));
+    return FN(finite_)(FN(select_f)(
+        none, zero, FN(select_f)(inside, d, to - from) / FN(select_f)(none, one, sum)));
 }
 SL_INLINE F FN(inversesqrt_d)(F a, F d) {
     const F zero = FN(spread_f)(0), one = FN(spread_f)(1);
@@ -172,18 +172,19 @@ SL_INLINE F FN(inversesqrt_d)(F a, F d) {
     const F p = FN(root_f)(FN(select_f)(smooth, a, one)),
             q = FN(root_f)(FN(select_f)(smooth, b, one));
     const F change = (-d / (p + q)) / p / q;
-    return FN(finite_)(
-        FN(select_f)(smooth, change, FN(inversesqrt)(b) - FN(inversesqrt)(a)));
+    return FN(finite_)(FN(select_f)(smooth, change, FN(inversesqrt)(b) - FN(inversesqrt)(a)));
 }
 /* From the place in a's own cell: whole cells are counted, not subtracted. */
 SL_INLINE F FN(mod_d)(F a, F b, F da, F db) {
     const F zero = FN(spread_f)(0), one = FN(spread_f)(1);
-    const F b1 = b + db, r0 = FN(mod)(a, b);
+    const F b1 = FN(moved_)(b, db), r0 = FN(finite_)(FN(mod)(a, b));
     const I none = FN(eq_f)(b, zero), none1 = FN(eq_f)(b1, zero);
-    const F cell = FN(floor)((a - r0) / FN(select_f)(none, one, b) + 0.5f);
+    const F safe = FN(select_f)(none, one, b);
+    const F cell = FN(floor)((a - r0) / safe + 0.5f);
     const F rise = da - FN(select_f)(none, zero, FN(select_f)(FN(eq_f)(db, zero), zero, db * cell));
     const F offset = FN(select_f)(none, a, zero);
-    const F crossed = FN(floor)((r0 + offset + rise) / FN(select_f)(none1, one, b1));
+    const F to = FN(floor)((r0 + offset + rise) / FN(select_f)(none1, one, b1));
+    const F crossed = to - FN(floor)(r0 / safe); /* where r0 was rounded up to b: not 0 */
     const F r = FN(select_f)(FN(eq_f)(crossed, zero), rise, rise - b1 * crossed) + offset;
     const F most = FN(max_f)(FN(abs)(b), FN(abs)(b1));
     const F limited = FN(clamp_f)(FN(finite_)(r), -most, most);
@@ -228,8 +229,8 @@ SL_INLINE V FN(normalize_d)(V a, V d) {
     const V turn = FN(sub_3)(move, FN(scale_3)(from, growth / safe));
     V r = FN(scale_3)(turn, one / safe1);
     if (FN(any)(far)) {
-        const V after = FN(make_3)(FN(moved_)(a.x, d.x), FN(moved_)(a.y, d.y),
-                                   FN(moved_)(a.z, d.z));
+        const V after =
+            FN(make_3)(FN(moved_)(a.x, d.x), FN(moved_)(a.y, d.y), FN(moved_)(a.z, d.z));
         r = FN(select_3)(far, FN(sub_3)(FN(normalize)(after), FN(normalize)(a)), r);
     }
     return FN(select_3)(FN(eq_f)(step, zero), FN(f_to_3)(zero), r);

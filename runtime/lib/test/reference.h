@@ -115,11 +115,8 @@ struct Basis {
 };
 inline constexpr Basis catmull_rom = {
     1, {{-.5, 1.5, -1.5, .5}, {1, -2.5, 2, -.5}, {-.5, 0, .5, 0}, {0, 1, 0, 0}}};
-inline constexpr Basis bspline = {1,
-                                  {{-1. / 6, .5, -.5, 1. / 6},
-                                   {.5, -1, .5, 0},
-                                   {-.5, 0, .5, 0},
-                                   {1. / 6, 4. / 6, 1. / 6, 0}}};
+inline constexpr Basis bspline = {
+    1, {{-1. / 6, .5, -.5, 1. / 6}, {.5, -1, .5, 0}, {-.5, 0, .5, 0}, {1. / 6, 4. / 6, 1. / 6, 0}}};
 inline constexpr Basis bezier = {3, {{-1, 3, -3, 1}, {3, -6, 3, 0}, {-3, 3, 0, 0}, {1, 0, 0, 0}}};
 inline constexpr Basis hermite = {2, {{2, 1, -2, 1}, {-3, -2, 3, -1}, {0, 1, 0, 0}, {1, 0, 0, 0}}};
 inline constexpr Basis linear = {1, {{0, 0, 0, 0}, {0, 0, 0, 0}, {0, -1, 1, 0}, {0, 1, 0, 0}}};
@@ -268,8 +265,8 @@ template <class T> Triple<T> by_rows(const Triple<T>& c, const double (&m)[9]) {
 }
 inline constexpr double rgb_of_yiq[9] = {1, .956, .620, 1, -.272, -.647, 1, -1.108, 1.705};
 inline constexpr double yiq_of_rgb[9] = {.299, .587, .114, .596, -.275, -.321, .212, -.523, .311};
-inline constexpr double rgb_of_xyz[9] = {3.24079,  -1.53715, -.498535, -.969256, 1.875992,
-                                         .041556,  .055648,  -.204043, 1.057311};
+inline constexpr double rgb_of_xyz[9] = {3.24079, -1.53715, -.498535, -.969256, 1.875992,
+                                         .041556, .055648,  -.204043, 1.057311};
 inline constexpr double xyz_of_rgb[9] = {0.412400320,  0.357533719, 0.180399450,
                                          0.212643845,  0.715135558, 0.0721568450,
                                          0.0193313368, 0.119191390, 0.950225838};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Gradient noise, periodic noise and cell noise in double precision, one general loop over the
-// corners of a cell of any dimension, after the definition in the head of runtime/lib/noise_lattice.h.
+// corners of a cell of any dimension, after the definition in the head of
+// runtime/lib/noise_lattice.h.
 #include "slc/interp_value.h"
 
 #include <algorithm>

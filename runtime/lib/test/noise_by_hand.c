@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0
- * The noise of noise_lattice.h written for one processor: AVX2 intrinsics, everything inlined into the
- * octave loop. The limit that the library's form is measured against.
+ * The noise of noise_lattice.h written for one processor: AVX2 intrinsics, everything inlined into
+ * the octave loop. The limit that the library's form is measured against.
  */
 #include "noise_loop.h"
 

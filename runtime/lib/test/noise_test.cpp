@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // noise, pnoise, cellnoise, random: against a second implementation written from the definition in
-// noise_lattice.h (in double, corner by corner), and against the statistics reference/sl.md 4.1.3 asks
-// for.
+// noise_lattice.h (in double, corner by corner), and against the statistics reference/sl.md 4.1.3
+// asks for.
 #include "runtime/lib/test/fixture.h"
 #include "runtime/lib/test_services.h"
 

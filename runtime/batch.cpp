@@ -41,6 +41,11 @@ std::size_t elements_of(const sl_param& p) {
            static_cast<std::size_t>(components_of(static_cast<sl_type>(p.type)));
 }
 
+// With the differences at the auxiliary points, which are 0 until the engine fills them.
+std::size_t num_planes(const sl_param& p) {
+    return elements_of(p) * (p.needs_aux != 0 ? 3 : 1);
+}
+
 } // namespace
 
 // Byte offsets of everything in the one block of memory; a first pass sizes it, a second one points
@@ -69,7 +74,7 @@ struct ShadeBatch::Layout {
             if (both >> id & 1U) {
                 var[id] = add(bytes);
             }
-            if (object.needed_aux >> id & 1U) {
+            if ((object.needed_aux | object.written_aux) >> id & 1U) {
                 aux_u[id] = add(bytes);
                 aux_v[id] = add(bytes);
             }
@@ -99,7 +104,7 @@ void ShadeBatch::begin(const ShaderInstance& instance, std::uint32_t count) {
         const sl_param& p = object.params[i];
         if (p.detail == SL_DETAIL_varying) {
             const std::size_t unit = p.type == SL_TYPE_string ? sizeof(sl_string) : sizeof(float);
-            layout.add(elements_of(p) * batch_.stride * unit);
+            layout.add(num_planes(p) * batch_.stride * unit);
         }
     }
     layout.seeds = layout.add(batch_.stride * sizeof(std::uint32_t));
@@ -129,7 +134,7 @@ void ShadeBatch::point_to(const Layout& layout, std::byte* memory) {
         if ((object.needed | object.written) >> id & 1U) {
             main_.var[id] = reinterpret_cast<float*>(memory + layout.var[id]);
         }
-        if (object.needed_aux >> id & 1U) {
+        if ((object.needed_aux | object.written_aux) >> id & 1U) {
             aux_u_.var[id] = reinterpret_cast<float*>(memory + layout.aux_u[id]);
             aux_v_.var[id] = reinterpret_cast<float*>(memory + layout.aux_v[id]);
         }
@@ -138,7 +143,7 @@ void ShadeBatch::point_to(const Layout& layout, std::byte* memory) {
     lit_ = reinterpret_cast<std::uint32_t*>(memory + layout.lit);
     frames_ = memory + layout.frames;
 
-    const bool has_aux = (object.facts & SL_FACT_area_operators) != 0;
+    const bool has_aux = (object.needed_aux | object.written_aux) != 0;
     batch_.main = &main_;
     batch_.aux_u = has_aux ? &aux_u_ : nullptr;
     batch_.aux_v = has_aux ? &aux_v_ : nullptr;
@@ -161,7 +166,7 @@ void ShadeBatch::bind_params(const Layout& layout, std::byte* memory) {
         std::byte* planes = memory + at;
         spread(p, planes);
         const std::size_t unit = p.type == SL_TYPE_string ? sizeof(sl_string) : sizeof(float);
-        at += round_up(elements_of(p) * batch_.stride * unit, alignment);
+        at += round_up(num_planes(p) * batch_.stride * unit, alignment);
         std::memcpy(block + p.offset, &planes, sizeof planes);
     }
 }
@@ -218,6 +223,14 @@ std::byte* ShadeBatch::slot(const sl_param& p) const {
 float* ShadeBatch::param_plane(int index, int component) {
     const sl_param* p = param(index, true, false);
     return p ? plane_of(*reinterpret_cast<float**>(slot(*p)), component) : nullptr;
+}
+
+float* ShadeBatch::param_aux(int index, int point, int component) {
+    const sl_param* p = param(index, true, false);
+    if (p == nullptr || p->needs_aux == 0) {
+        return nullptr;
+    }
+    return param_plane(index, static_cast<int>(elements_of(*p)) * point + component);
 }
 
 sl_string* ShadeBatch::param_strings(int index) {

@@ -40,7 +40,8 @@ public:
     [[nodiscard]] std::uint32_t stride() const { return batch_.stride; }
     [[nodiscard]] const ShaderInstance& instance() const { return *instance_; }
 
-    // All planes, for geo::World::fill; the auxiliary ones are null without area operators.
+    // All planes, for geo::World::fill; the auxiliary records are null if the shader has no use for
+    // them.
     [[nodiscard]] const sl_points& points() const { return main_; }
     [[nodiscard]] const sl_points* aux_points_u() const { return batch_.aux_u; }
     [[nodiscard]] const sl_points* aux_points_v() const { return batch_.aux_v; }
@@ -54,8 +55,8 @@ public:
     // The components of a variable that is uniform in sl_variables.def (E, ncomps); null if
     // !has(id).
     [[nodiscard]] float* uniform(sl_variable id) { return main_.var[id]; }
-    // Differences X(u+du,v) - X(u,v) and X(u,v+dv) - X(u,v) of the variables in needed_aux; null
-    // otherwise.
+    // Differences X(u+du,v) - X(u,v) and X(u,v+dv) - X(u,v) of the variables in needed_aux and
+    // written_aux; null otherwise.
     [[nodiscard]] float* aux_u(sl_variable id, int component = 0) {
         return plane_of(aux_u_.var[id], component);
     }
@@ -66,6 +67,9 @@ public:
     // A varying parameter's plane (component counts through array elements), to bind a primitive
     // variable or read an output; null when the parameter is uniform or no number.
     [[nodiscard]] float* param_plane(int param, int component = 0);
+    // The same for its differences at auxiliary point 1 (u + du) or 2 (v + dv); null unless the
+    // shader asks for them (sl_param.needs_aux).
+    [[nodiscard]] float* param_aux(int param, int point, int component = 0);
     // A varying string parameter: one per point. Null otherwise.
     [[nodiscard]] sl_string* param_strings(int param);
     // A uniform parameter's value in this batch's copy: array_length * components floats (null:

@@ -61,10 +61,10 @@ void init(const sl_init* in) {
 
 const char* const strings[] = {"x"};
 const sl_param params[] = {
-    {"k", SL_TYPE_float, SL_DETAIL_uniform, 0, 0, offsetof(Block, k)},
-    {"Q", SL_TYPE_point, SL_DETAIL_varying, 0, 0, offsetof(Block, Q)},
-    {"out", SL_TYPE_color, SL_DETAIL_varying, 0, 1, offsetof(Block, out)},
-    {"name", SL_TYPE_string, SL_DETAIL_uniform, 0, 0, offsetof(Block, name)},
+    {"k", SL_TYPE_float, SL_DETAIL_uniform, 0, 0, offsetof(Block, k), 0},
+    {"Q", SL_TYPE_point, SL_DETAIL_varying, 0, 0, offsetof(Block, Q), 0},
+    {"out", SL_TYPE_color, SL_DETAIL_varying, 0, 1, offsetof(Block, out), 0},
+    {"name", SL_TYPE_string, SL_DETAIL_uniform, 0, 0, offsetof(Block, name), 0},
 };
 
 struct TestObject {
@@ -181,6 +181,29 @@ TEST_F(Batches, RestartRunsTheSamePointsAgain) {
     EXPECT_EQ(batch.run({&services, nullptr}), 0U);
     EXPECT_EQ(batch.param_plane(2, 0)[0], 8);
     EXPECT_EQ(batch.plane(SL_VAR_Ci)[4], 4);
+}
+
+TEST_F(Batches, DifferencesHavePlanesWhereTheShaderAsks) {
+    TestObject source;
+    sl_param asked[4];
+    std::copy_n(params, 4, asked);
+    asked[1].needs_aux = 1;
+    source.object.params = asked;
+    source.object.needed_aux = 1ull << SL_VAR_s;
+    source.object.written_aux = 1ull << SL_VAR_P;
+    const ShaderObject* object = library.adopt(source.object);
+    const ShaderInstance instance(*object, {}, services, nullptr, table, diag);
+    ShadeBatch batch;
+    batch.begin(instance, 9);
+    ASSERT_NE(batch.aux_points_u(), nullptr);
+    EXPECT_NE(batch.aux_u(SL_VAR_s), nullptr);
+    EXPECT_NE(batch.aux_v(SL_VAR_P, 2), nullptr);
+    EXPECT_EQ(batch.aux_u(SL_VAR_N), nullptr);
+    // Behind the three planes of Q lie its differences, zero until somebody fills them.
+    EXPECT_EQ(batch.param_aux(1, 1, 0), batch.param_plane(1, 3));
+    EXPECT_EQ(batch.param_aux(1, 2, 2), batch.param_plane(1, 8));
+    EXPECT_EQ(batch.param_aux(1, 2, 2)[8], 0);
+    EXPECT_EQ(batch.param_aux(2, 1, 0), nullptr);
 }
 
 TEST_F(Batches, SuspendedPacketsAreCalledAgain) {

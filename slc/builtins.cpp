@@ -16,7 +16,9 @@ constexpr std::uint32_t SL_PURE = PropPure, SL_CONTEXT = PropContext, SL_VARIES 
                         SL_EFFECT = PropEffect, SL_LIGHTS = PropLights, SL_AREA = PropArea,
                         SL_TRACES = PropTraces, SL_TEXTURES = PropTextures,
                         SL_MESSAGE = PropMessage, SL_SPACES = PropSpaces, SL_STATE = PropState,
-                        SL_RANDOM = PropRandom, SL_CHANNEL = PropChannel, SL_INOUT = PropInout;
+                        SL_RANDOM = PropRandom, SL_CHANNEL = PropChannel, SL_INOUT = PropInout,
+                        SL_DIFF [[maybe_unused]] = PropDiff,
+                        SL_LINEAR [[maybe_unused]] = PropLinear, SL_HIDDEN = PropHidden;
 
 struct RawRow {
     std::string_view name, signature, body;
@@ -130,6 +132,25 @@ std::vector<BuiltinRow> decode_all() {
     return rows;
 }
 
+// Rows that repeat their last argument after four of a kind are splines: those are knots.
+std::size_t num_without_knots(const BuiltinRow& row) {
+    constexpr std::size_t least_knots = 4;
+    const bool has_knots = row.repeats_last && row.args.size() > least_knots;
+    return row.args.size() - (has_knots ? least_knots : 0);
+}
+
+std::vector<int> places_of(const BuiltinRow& row) {
+    std::vector<int> places;
+    for (std::size_t i = 0; i < num_without_knots(row); ++i) {
+        const ArgSpec& a = row.args[i];
+        const bool is_numeric = a.kind != ArgKind::Anything && a.type != Type::String;
+        if (is_numeric && !a.is_output && !a.is_array) {
+            places.push_back(static_cast<int>(i) + (row.has(PropChannel) && i > 0 ? 1 : 0));
+        }
+    }
+    return places;
+}
+
 constexpr std::array<VariableRow, SL_VAR_COUNT> variables = {{
 #define SL_TABLE_TYPE_float     Type::Float
 #define SL_TABLE_TYPE_color     Type::Color
@@ -155,11 +176,32 @@ std::vector<int> find_builtins(std::string_view name) {
     std::vector<int> found;
     const auto rows = builtin_rows();
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        if (rows[i].name == name) {
+        if (rows[i].name == name && !rows[i].has(PropHidden)) {
             found.push_back(static_cast<int>(i));
         }
     }
     return found;
+}
+
+int find_builtin_by_body(std::string_view body) {
+    const auto rows = builtin_rows();
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (rows[i].body == body) {
+            return static_cast<int>(i);
+        }
+    }
+    return -1;
+}
+
+const std::vector<int>& difference_places(int row) {
+    static const std::vector<std::vector<int>> places = [] {
+        std::vector<std::vector<int>> all;
+        for (const BuiltinRow& r : builtin_rows()) {
+            all.push_back(places_of(r));
+        }
+        return all;
+    }();
+    return places[static_cast<std::size_t>(row)];
 }
 
 std::span<const VariableRow> variable_rows() {

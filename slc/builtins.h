@@ -26,7 +26,10 @@ enum Property : std::uint32_t {
     PropState = 1u << 10,
     PropRandom = 1u << 11,
     PropChannel = 1u << 12,
-    PropInout = 1u << 13
+    PropInout = 1u << 13,
+    PropDiff = 1u << 14,
+    PropLinear = 1u << 15,
+    PropHidden = 1u << 16
 };
 
 // One place of a signature.
@@ -60,8 +63,14 @@ struct BuiltinRow {
 };
 
 [[nodiscard]] std::span<const BuiltinRow> builtin_rows();
-// Rows of one name are adjacent groups in table order; returns their numbers.
+// Rows of one name that a user may call, in table order; returns their numbers.
 [[nodiscard]] std::vector<int> find_builtins(std::string_view name);
+// The first row with that body, hidden ones included; -1: none.
+[[nodiscard]] int find_builtin_by_body(std::string_view body);
+// Places in Stmt::args of the numeric arguments that an Op::Difference of the row has differences
+// for, in order. Arrays, knots of splines, channels, name/value pairs, outputs and strings have
+// none.
+[[nodiscard]] const std::vector<int>& difference_places(int row);
 
 struct VariableRow {
     std::string_view name;

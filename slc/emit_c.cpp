@@ -194,7 +194,8 @@ void CFile::descriptor() {
             out_.line("{" + c_string(v.name) + ", SL_TYPE_" + std::string(type_name(v.type)) +
                       ", SL_DETAIL_" + std::string(detail_name(v.detail)) + ", " +
                       std::to_string(v.array_length) + ", " + (v.is_output ? "1" : "0") + ", " +
-                      std::to_string(layout.offsets[i]) + "},");
+                      std::to_string(layout.offsets[i]) + ", " +
+                      (i < facts_.aux_params.size() && facts_.aux_params[i] ? "1" : "0") + "},");
         }
         out_.close("};");
     }
@@ -230,6 +231,7 @@ void CFile::descriptor() {
     out_.line(".needed = " + mask_text(facts_.needed) + ",");
     out_.line(".written = " + mask_text(facts_.written) + ",");
     out_.line(".needed_aux = " + mask_text(facts_.needed_aux) + ",");
+    out_.line(".written_aux = " + mask_text(facts_.written_aux) + ",");
     if (!strings_.texts().empty()) {
         out_.line(".num_strings = " + std::to_string(strings_.texts().size()) + ",");
         out_.line(".strings = sl_strings,");

@@ -3,6 +3,7 @@
 // uniform values.
 #include "slc/builtins.h"
 #include "slc/emit_common.h"
+#include "slc/ir_util.h"
 
 #include <algorithm>
 
@@ -14,6 +15,7 @@ struct Emitter::Call {
     const Block& b;
     const BuiltinRow& row;
     bool lanes;
+    std::size_t num_args; // of the row; differences follow
     std::vector<std::string> arguments;
     // Outputs that go through a temporary: (variable, temporary).
     std::vector<std::pair<VarId, std::string>> through;
@@ -47,7 +49,10 @@ bool Emitter::runs_on_lanes(const Stmt& s) const {
 
 void Emitter::call(const Stmt& s, const Block& b) {
     const BuiltinRow& row = builtin_rows()[static_cast<std::size_t>(s.builtin)];
-    Call c{s, b, row, runs_on_lanes(s), {}, {}};
+    const bool is_difference = s.op == Op::Difference;
+    const std::size_t num_args =
+        s.args.size() - (is_difference ? difference_places(s.builtin).size() : 0);
+    Call c{s, b, row, runs_on_lanes(s), num_args, {}, {}};
     refresh_planes(row.reads, b);
     Expr value;
     value.varying = c.lanes;
@@ -55,7 +60,8 @@ void Emitter::call(const Stmt& s, const Block& b) {
     if (row.body == "arraylength") {
         value = Expr{float_literal(static_cast<float>(var(s.args[0]).array_length)), Form::Float,
                      false, false, Prec::Atom};
-    } else if (row.repeats_last && (row.body.starts_with("min_") || row.body.starts_with("max_"))) {
+    } else if (!is_difference && row.repeats_last &&
+               (row.body.starts_with("min_") || row.body.starts_with("max_"))) {
         value = chained(c);
     } else {
         if (row.has(PropContext)) {
@@ -69,8 +75,11 @@ void Emitter::call(const Stmt& s, const Block& b) {
         } else {
             fixed_arguments(c);
         }
-        value.text =
-            (c.lanes ? "slv_" : "slu_") + std::string(row.body) + "(" + joined(c.arguments) + ")";
+        if (is_difference) {
+            differences(c);
+        }
+        value.text = (c.lanes ? "slv_" : "slu_") + std::string(row.body) +
+                     (is_difference ? "_d(" : "(") + joined(c.arguments) + ")";
     }
     if (may_defer(s, b) && c.through.empty()) {
         defer(s.dst, std::move(value));
@@ -98,7 +107,7 @@ void Emitter::refresh_planes(std::uint64_t reads, const Block& b) {
     }
     for (std::size_t i = 0; i < program_.vars.size(); ++i) {
         const Var& v = program_.vars[i];
-        if (v.kind != VarKind::Global || (reads & results_ & std::uint64_t{1} << v.index) == 0 ||
+        if (!is_global(v) || (reads & results_ & std::uint64_t{1} << v.index) == 0 ||
             !flow_.place(static_cast<VarId>(i)).is_written ||
             declared_.count(static_cast<VarId>(i)) == 0) {
             continue;
@@ -111,7 +120,7 @@ void Emitter::refresh_planes(std::uint64_t reads, const Block& b) {
 void Emitter::fixed_arguments(Call& c) {
     std::size_t next = 0;
     const bool name_first = c.row.has(PropChannel);
-    for (std::size_t r = 0; r < c.row.args.size() && next < c.s.args.size(); ++r) {
+    for (std::size_t r = 0; r < c.row.args.size() && next < c.num_args; ++r) {
         const ArgSpec& spec = c.row.args[r];
         const VarId v = c.s.args[next++];
         if (spec.is_output) {
@@ -123,12 +132,21 @@ void Emitter::fixed_arguments(Call& c) {
                 spec.kind == ArgKind::Exact ? form_of(spec.type) : form_of(Type::Vector);
             c.arguments.push_back(fit(use(v), wanted, c.lanes).text);
         }
-        if (name_first && r == 0 && next < c.s.args.size()) {
+        if (name_first && r == 0 && next < c.num_args) {
             c.arguments.push_back(as_uniform(as_float(use(c.s.args[next++])), c.b).text);
         }
     }
     if (c.row.takes_pairs || c.row.takes_values) {
         value_arguments(c, next);
+    }
+}
+
+// What a body <body>_d takes after the arguments of <body>.
+void Emitter::differences(Call& c) {
+    const std::vector<int>& places = difference_places(c.s.builtin);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const Form wanted = form(c.s.args[static_cast<std::size_t>(places[i])]);
+        c.arguments.push_back(fit(use(c.s.args[c.num_args + i]), wanted, c.lanes).text);
     }
 }
 
@@ -162,11 +180,11 @@ void Emitter::output_argument(Call& c, VarId v) {
 
 void Emitter::value_arguments(Call& c, std::size_t first) {
     std::string list;
-    for (std::size_t i = first; i < c.s.args.size(); ++i) {
+    for (std::size_t i = first; i < c.num_args; ++i) {
         list += (i > first ? ", " : "") +
                 typed_value(c.s.args[i]).substr(std::string("(sl_value)").size());
     }
-    const std::size_t n = c.s.args.size() - first;
+    const std::size_t n = c.num_args - first;
     c.arguments.push_back(n == 0 ? "0" : "(sl_value[]){" + list + "}");
     c.arguments.push_back(std::to_string(n));
 }
@@ -183,7 +201,7 @@ void Emitter::spline_arguments(Call& c) {
     const VarId knots = c.s.args[next];
     if (var(knots).array_length == 0) {
         c.arguments.push_back(knot_array(c, next));
-        c.arguments.push_back(std::to_string(c.s.args.size() - next));
+        c.arguments.push_back(std::to_string(c.num_args - next));
         return;
     }
     const std::string length = std::to_string(var(knots).array_length);
@@ -204,12 +222,12 @@ void Emitter::spline_arguments(Call& c) {
 
 std::string Emitter::knot_array(Call& c, std::size_t first) {
     Form wanted = Form::Float;
-    for (std::size_t i = first; i < c.s.args.size(); ++i) {
+    for (std::size_t i = first; i < c.num_args; ++i) {
         wanted = std::max(wanted, form(c.s.args[i]));
     }
     const bool lanes = c.lanes && wanted != Form::String;
     std::string list;
-    for (std::size_t i = first; i < c.s.args.size(); ++i) {
+    for (std::size_t i = first; i < c.num_args; ++i) {
         Expr e = use(c.s.args[i]);
         e = wanted == Form::String ? as_uniform(std::move(e), c.b)
                                    : fit(std::move(e), wanted, lanes);

@@ -63,6 +63,11 @@ void Emitter::declare_at_top() {
         if (!place.home || place.set_first) {
             continue;
         }
+        if (var(v).aux != 0) {
+            load_aux(v);
+            declared_.insert(v);
+            continue;
+        }
         switch (var(v).kind) {
         case VarKind::Global:
             load_global(v);
@@ -80,6 +85,46 @@ void Emitter::declare_at_top() {
             break; // arrays are declared with the object's other constants
         }
         declared_.insert(v);
+    }
+}
+
+// Differences at the auxiliary points; 0 where the engine has none.
+void Emitter::load_aux(VarId v) {
+    const Var& variable = var(v);
+    const std::string points = variable.aux == 1 ? "batch->aux_u" : "batch->aux_v";
+    const std::string suffix(form_suffix(form(v)));
+    if (variable.kind == VarKind::Global) {
+        out_.line(declarator(v, !flow_.place(v).is_written) + " = slv_aux_" + suffix + "(call, " +
+                  points + ", SL_VAR_" +
+                  std::string(variable_rows()[static_cast<std::size_t>(variable.index)].name) +
+                  ");");
+        return;
+    }
+    const auto param =
+        static_cast<std::size_t>(program_.params[static_cast<std::size_t>(variable.index)].var);
+    const int n = num_components(variable.type), length = std::max(variable.array_length, 1);
+    const std::string base =
+        "params->" + names_[param] + " + " + std::to_string(variable.aux * n * length);
+    if (variable.array_length == 0) {
+        out_.line(declarator(v, !flow_.place(v).is_written) + " = sl_load_" + suffix + "(call, " +
+                  base + " * batch->stride);");
+        return;
+    }
+    const std::string& name = names_[static_cast<std::size_t>(v)];
+    out_.line(declarator(v, false) + ";");
+    out_.line("for (int k = 0; k < " + std::to_string(length) + "; k++)");
+    out_.line("    " + name + "[k] = sl_load_" + suffix + "(call, params->" + names_[param] +
+              " + (" + std::to_string(variable.aux * n * length) + " + k * " + std::to_string(n) +
+              ") * batch->stride);");
+}
+
+void Emitter::store_aux(VarId v) {
+    const Var& variable = var(v);
+    if (variable.kind == VarKind::Global) {
+        out_.line("sl_store_aux_" + std::string(form_suffix(form(v))) + "(call, " +
+                  (variable.aux == 1 ? "batch->aux_u" : "batch->aux_v") + ", SL_VAR_" +
+                  std::string(variable_rows()[static_cast<std::size_t>(variable.index)].name) +
+                  ", " + names_[static_cast<std::size_t>(v)] + ");");
     }
 }
 
@@ -134,7 +179,9 @@ void Emitter::store_results() {
         if (!flow_.place(v).is_written) {
             continue;
         }
-        if (variable.kind == VarKind::Param) {
+        if (variable.aux != 0) {
+            store_aux(v);
+        } else if (variable.kind == VarKind::Param) {
             store_param(v);
         } else if (variable.kind == VarKind::Global && (results_ >> variable.index & 1U) != 0) {
             out_.line("sl_store_" + std::string(form_suffix(form(v))) +
@@ -196,7 +243,7 @@ bool Emitter::may_defer(const Stmt& s, const Block& b) const {
         flow_.must_blend(s.dst, b)) {
         return false;
     }
-    if (s.op == Op::Call) {
+    if (s.op == Op::Call || s.op == Op::Difference) {
         const BuiltinRow& row = builtin_rows()[static_cast<std::size_t>(s.builtin)];
         return row.has(PropPure) && !row.repeats_last && !row.takes_pairs && !row.takes_values;
     }

@@ -139,6 +139,7 @@ private:
     void call(const Stmt& s, const Block& b);
     [[nodiscard]] bool runs_on_lanes(const Stmt& s) const;
     void fixed_arguments(Call& c);
+    void differences(Call& c);
     void output_argument(Call& c, VarId v);
     void value_arguments(Call& c, std::size_t first);
     void spline_arguments(Call& c);
@@ -174,6 +175,8 @@ private:
     void declare_at_top();
     void load_global(VarId v);
     void load_param(VarId v);
+    void load_aux(VarId v);
+    void store_aux(VarId v);
     void store_results();
     void store_param(VarId v);
     [[nodiscard]] bool may_defer(const Stmt& s, const Block& b) const;

@@ -57,6 +57,7 @@ void Emitter::statement(const Stmt& s, const Block& b) {
     reading_.clear();
     switch (s.op) {
     case Op::Call:
+    case Op::Difference:
         call(s, b);
         return;
     case Op::Store:

@@ -38,7 +38,8 @@ void Flow::settle_places(std::uint64_t results) {
             continue;
         }
         const bool is_result = var.kind == VarKind::Param ||
-                               (var.kind == VarKind::Global && (results >> var.index & 1U) != 0);
+                               (is_global(var) && (results >> var.index & 1U) != 0) ||
+                               (var.kind == VarKind::Global && var.aux != 0);
         if (is_result) {
             place.home = &body_; // read after the body ends
         }
@@ -51,7 +52,7 @@ void Flow::settle_places(std::uint64_t results) {
 
 VarId Flow::global(sl_variable id) const {
     for (std::size_t i = 0; i < program_.vars.size(); ++i) {
-        if (program_.vars[i].kind == VarKind::Global && program_.vars[i].index == id) {
+        if (is_global(program_.vars[i], id)) {
             return static_cast<VarId>(i);
         }
     }

@@ -119,13 +119,12 @@ bool Analysis::names_object_space(const Stmt& s) const {
 }
 
 bool Analysis::copies_Os(const Stmt& s) const {
-    return s.op == Op::Copy && var(s.args[0]).kind == VarKind::Global &&
-           var(s.args[0]).index == SL_VAR_Os;
+    return s.op == Op::Copy && is_global(var(s.args[0]), SL_VAR_Os);
 }
 
 void Analysis::opacity(const Stmt& s) {
     for_each_write(s, [&](VarId id, bool) {
-        if (var(id).kind != VarKind::Global) {
+        if (!is_global(var(id))) {
             return;
         }
         // Oi = Os leaves the opacity the primitive has.
@@ -153,7 +152,7 @@ void Analysis::explain(const Stmt& s) {
         return;
     }
     for_each_read(s, [&](VarId id) {
-        if (var(id).kind == VarKind::Global) {
+        if (is_global(var(id))) {
             reason(var(id).index, s, "read");
         }
     });

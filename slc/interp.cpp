@@ -44,8 +44,10 @@ Interpreter::Interpreter(const Program& program, InterpHost& host, int num_point
         }
         values_.emplace_back(v.kind == VarKind::Global ? 0 : n, initial);
     }
-    for (const VariableRow& row : variable_rows()) {
-        globals_.emplace_back(n, Value::zero(row.type));
+    for (int aux = 0; aux < 3; ++aux) {
+        for (const VariableRow& row : variable_rows()) {
+            globals_.emplace_back(n, Value::zero(row.type));
+        }
     }
     bound_.resize(program.vars.size(), 0);
     random_counts_.resize(n, 0);
@@ -55,8 +57,9 @@ Interpreter::Interpreter(const Program& program, InterpHost& host, int num_point
 
 Value& Interpreter::at(VarId id, int point) {
     const Var& v = var(id);
-    auto& plane = v.kind == VarKind::Global ? globals_[static_cast<std::size_t>(v.index)]
-                                            : values_[static_cast<std::size_t>(id)];
+    auto& plane = v.kind == VarKind::Global
+                      ? globals_[static_cast<std::size_t>(v.aux * SL_VAR_COUNT + v.index)]
+                      : values_[static_cast<std::size_t>(id)];
     return plane[static_cast<std::size_t>(point)];
 }
 
@@ -74,6 +77,16 @@ const Value& Interpreter::global(int variable, int point) const {
 
 void Interpreter::set_global(int variable, int point, const Value& value) {
     globals_[static_cast<std::size_t>(variable)][static_cast<std::size_t>(point)] = value;
+}
+
+const Value& Interpreter::aux(int variable, int aux, int point) const {
+    return globals_[static_cast<std::size_t>(aux * SL_VAR_COUNT + variable)]
+                   [static_cast<std::size_t>(point)];
+}
+
+void Interpreter::set_aux(int variable, int aux, int point, const Value& value) {
+    globals_[static_cast<std::size_t>(aux * SL_VAR_COUNT + variable)]
+            [static_cast<std::size_t>(point)] = value;
 }
 
 std::size_t Interpreter::find(std::string_view name) const {
@@ -156,6 +169,13 @@ void Interpreter::statement(const Stmt& s, Mask& mask) {
         break;
     case Op::Call:
         call(s, mask);
+        break;
+    case Op::Difference:
+        for (int p = 0; p < num_points_; ++p) {
+            if (mask[static_cast<std::size_t>(p)] != 0) {
+                row_difference(s, mask, p);
+            }
+        }
         break;
     default:
         for (int p = 0; p < num_points_; ++p) {

@@ -53,12 +53,15 @@ public:
 
     // Values before the run; unset variables are zero.
     void set_global(int variable, int point, const Value& value);
+    // Its difference at an auxiliary point (1: u, 2: v).
+    void set_aux(int variable, int aux, int point, const Value& value);
     void set_param(std::string_view name, int point, const Value& value); // instead of its default
     // Evaluates the defaults of parameters that were not set, then the body. False: stopped, it did
     // not end.
     bool run();
 
     [[nodiscard]] const Value& global(int variable, int point) const;
+    [[nodiscard]] const Value& aux(int variable, int aux, int point) const;
     [[nodiscard]] const Value& param(std::string_view name, int point) const;
     [[nodiscard]] const Value& value(VarId id, int point) const { return at(id, point); }
     // Light shaders: the point was in the cone of an illuminate or solar.
@@ -92,11 +95,13 @@ private:
 
     // interp_call.cpp
     void call(const Stmt& s, const Mask& mask);
+    void row_difference(const Stmt& s, const Mask& mask, int point);
     void call_at(const Stmt& s, const Mask& mask, int point);
     bool lighting(const Stmt& s, int point, Value& result);
     bool state(const Stmt& s, int point, std::vector<Value>& args, Value& result);
-    bool spaces(const Stmt& s, int point, Value& result);
+    bool spaces(const Stmt& s, int point, const std::vector<Value>& args, Value& result);
     bool area(const Stmt& s, const Mask& mask, int point, Value& result);
+    Triple3 oriented_normal(int point, const Triple3& p_u, const Triple3& p_v) const;
     bool text(const Stmt& s, int point, Value& result);
     void random(int point, bool is_uniform, Value& result);
     void fallback(const Stmt& s, int point, Value& result);
@@ -115,10 +120,10 @@ private:
     const Program& program_;
     InterpHost& host_;
     int num_points_;
-    std::vector<std::vector<Value>> values_;           // by variable, by point
-    std::vector<std::vector<Value>> globals_;          // by sl_variable, by point
-    std::vector<char> bound_;                          // parameters that were set
-    std::vector<std::uint32_t> random_counts_;         // by point
+    std::vector<std::vector<Value>> values_;   // by variable, by point
+    std::vector<std::vector<Value>> globals_;  // by aux * SL_VAR_COUNT + sl_variable, by point
+    std::vector<char> bound_;                  // parameters that were set
+    std::vector<std::uint32_t> random_counts_; // by point
     std::vector<std::uint32_t> random_uniform_counts_; // calls with a uniform target, by point
     Mask lit_;
     std::vector<Frame> frames_;

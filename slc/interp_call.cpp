@@ -33,7 +33,7 @@ void Interpreter::call_at(const Stmt& s, const Mask& mask, int point) {
     Value result = Value::zero(s.dst != no_var ? var(s.dst).type : Type::Float);
     if (const PureFunction f = pure_function(row.body)) {
         f(args, result);
-    } else if (!lighting(s, point, result) && !spaces(s, point, result) &&
+    } else if (!lighting(s, point, result) && !spaces(s, point, args, result) &&
                !area(s, mask, point, result) && !text(s, point, result) &&
                !state(s, point, args, result)) {
         fallback(s, point, result);
@@ -49,6 +49,39 @@ void Interpreter::call_at(const Stmt& s, const Mask& mask, int point) {
         result.type = var(s.dst).type;
         at(s.dst, point) = std::move(result);
     }
+}
+
+// f(a + d) - f(a), in double.
+void Interpreter::row_difference(const Stmt& s, const Mask&, int point) {
+    const BuiltinRow& row = builtin_of(s);
+    const std::vector<int>& places = difference_places(s.builtin);
+    const std::size_t num_args = s.args.size() - places.size();
+    Value results[2];
+    for (int moved = 0; moved < 2; ++moved) {
+        std::vector<Value> args;
+        for (std::size_t i = 0; i < num_args; ++i) {
+            args.push_back(at(s.args[i], point));
+        }
+        for (std::size_t i = 0; i < places.size() && moved != 0; ++i) {
+            Value& a = args[static_cast<std::size_t>(places[i])];
+            const Value& d = at(s.args[num_args + i], point);
+            for (std::size_t k = 0; k < a.x.size(); ++k) {
+                a.x[k] += d.at(k);
+            }
+        }
+        Value& result = results[moved];
+        result = Value::zero(var(s.dst).type);
+        if (const PureFunction f = pure_function(row.body)) {
+            f(args, result);
+        } else if (!spaces(s, point, args, result)) {
+            state(s, point, args, result);
+        }
+    }
+    for (std::size_t k = 0; k < results[0].x.size(); ++k) {
+        results[1].x[k] -= results[0].x[k];
+    }
+    results[1].type = var(s.dst).type;
+    at(s.dst, point) = std::move(results[1]);
 }
 
 namespace {
@@ -120,9 +153,9 @@ bool Interpreter::lighting(const Stmt& s, int point, Value& result) {
     return true;
 }
 
-bool Interpreter::spaces(const Stmt& s, int point, Value& result) {
+bool Interpreter::spaces(const Stmt& s, int point, const std::vector<Value>& args, Value& result) {
     const BuiltinRow& row = builtin_of(s);
-    const auto arg = [&](std::size_t i) -> const Value& { return at(s.args[i], point); };
+    const auto arg = [&](std::size_t i) -> const Value& { return args[i]; };
     if (row.body == "depth") {
         double near_z = 0;
         double far_z = 1;
@@ -133,7 +166,7 @@ bool Interpreter::spaces(const Stmt& s, int point, Value& result) {
     if (!row.has(PropSpaces)) {
         return false;
     }
-    const bool has_from = s.args.size() > 2;
+    const bool has_from = args.size() > 2;
     const std::string from = has_from ? arg(0).text() : "current";
     Matrix16 m{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     const Value& target = arg(has_from ? 1 : 0);
@@ -143,7 +176,7 @@ bool Interpreter::spaces(const Stmt& s, int point, Value& result) {
     } else {
         host_.space(from, target.text(), point, m);
     }
-    const Value& what = arg(s.args.size() - 1);
+    const Value& what = arg(args.size() - 1);
     if (row.body.starts_with("mtransform")) {
         const Matrix16 product = multiply(matrix_of(what), m);
         result.x.assign(product.begin(), product.end());
@@ -229,11 +262,29 @@ Value Interpreter::difference(VarId id, int point, int neighbour) const {
     return d;
 }
 
+// Du(p) ^ Dv(p) turned as Ng is turned from dPdu ^ dPdv; N where p spans no surface (sl.md 4.2,
+// 6.4).
+Triple3 Interpreter::oriented_normal(int point, const Triple3& p_u, const Triple3& p_v) const {
+    const double steps = global(SL_VAR_du, point).f() * global(SL_VAR_dv, point).f();
+    const Triple3 n = scale3(cross3(p_u, p_v), steps != 0 ? 1 / steps : 0);
+    if (!(dot3(n, n) > 0)) {
+        return global3(SL_VAR_N, point);
+    }
+    const Triple3 Ng = global3(SL_VAR_Ng, point);
+    const double side = dot3(cross3(global3(SL_VAR_dPdu, point), global3(SL_VAR_dPdv, point)), Ng);
+    return (side != 0 ? side : dot3(n, Ng)) < 0 ? scale3(n, -1) : n;
+}
+
 // Finite differences to the neighbours; without neighbours, or where they are not active, 0 (sl.md
 // 6).
 bool Interpreter::area(const Stmt& s, const Mask& mask, int point, Value& result) {
     const std::string_view name = builtin_of(s).name;
     const bool is_step = name == "filterstep";
+    if (name == "calculatenormal_d") {
+        put(result,
+            oriented_normal(point, at(s.args[0], point).triple(), at(s.args[1], point).triple()));
+        return true;
+    }
     if (name != "Du" && name != "Dv" && name != "Deriv" && name != "area" &&
         name != "calculatenormal" && !is_step) {
         return false;
@@ -267,10 +318,7 @@ bool Interpreter::area(const Stmt& s, const Mask& mask, int point, Value& result
         const double w = std::abs(by_u.f()) + std::abs(by_v.f());
         result = Value(w > 0 ? std::clamp((x + w / 2 - edge) / w, 0.0, 1.0) : x < edge ? 0.0 : 1.0);
     } else {
-        Triple3 n =
-            cross3(scale3(by_u.triple(), ratio(1, du)), scale3(by_v.triple(), ratio(1, dv)));
-        n = dot3(n, n) > 0 ? n : global3(SL_VAR_N, point);
-        put(result, dot3(n, global3(SL_VAR_Ng, point)) < 0 ? scale3(n, -1) : n);
+        put(result, oriented_normal(point, by_u.triple(), by_v.triple()));
     }
     return true;
 }

@@ -62,6 +62,9 @@ struct Var {
     int array_length = 0; // 0: not an array
     VarKind kind = VarKind::Temp;
     int index = -1;
+    // Global, Param: 0 the value, 1 and 2 its difference at the auxiliary points u + du and v + dv.
+    // A Param with aux is not in Program::params; its index tells which it belongs to.
+    int aux = 0;
     bool is_output = false; // Param
     bool declared_uniform =
         false; // the user wrote `uniform`; if it gets varying values it is varying all the same
@@ -108,6 +111,9 @@ enum class Op : std::uint8_t {
           // Arguments
     // are already of the class the row wants (float, triple, matrix, string); rows with SL_CHANNEL
     // have the channel (float) after the name; then repetitions (+), name/value pairs (*)
+    Difference, // dst = f(a + d) - f(a) for the row `builtin` with SL_DIFF; args: the row's, then
+                // the
+                // differences d of those at difference_places(row)
     // control; bodies as noted
     If,       // args[0] condition; bodies[0] then, bodies[1] else (may be empty)
     Loop,     // bodies[0] computes the condition args[0]; bodies[1] the body; bodies[2] the step
@@ -159,7 +165,9 @@ struct Program {
 struct Facts {
     std::uint64_t needed = 0; // bits 1 << sl_variable: must be filled before the shader runs
     std::uint64_t written = 0;
-    std::uint64_t needed_aux = 0;     // at the auxiliary points (area operators)
+    std::uint64_t needed_aux = 0;     // differences at the auxiliary points that are read
+    std::uint64_t written_aux = 0;    // and that are results (displacement)
+    std::vector<bool> aux_params;     // by parameter: its differences are read
     std::uint32_t facts = 0;          // SL_FACT_*
     std::vector<std::string> reasons; // for --explain: one line per needed variable
 };

@@ -235,6 +235,8 @@ void IrParser::variable() {
         const std::string w = plain();
         if (w == "index") {
             v.index = number();
+        } else if (w == "aux") {
+            v.aux = number();
         } else if (w == "output") {
             v.is_output = true;
         } else if (w == "declared_uniform") {
@@ -304,7 +306,7 @@ Stmt IrParser::statement() {
         fail("unknown operation " + w.text);
     }
     s.op = static_cast<Op>(op);
-    if (s.op == Op::Call) {
+    if (s.op == Op::Call || s.op == Op::Difference) {
         const std::string called = word().text;
         const std::string signature = word().text;
         const auto rows = builtin_rows();

@@ -109,6 +109,7 @@ void Printer::variable(const Var& v) {
         out_ += "[" + std::to_string(v.array_length) + "]";
     }
     out_ += v.index >= 0 ? " index " + std::to_string(v.index) : std::string();
+    out_ += v.aux != 0 ? " aux " + std::to_string(v.aux) : std::string();
     out_ += v.is_output ? " output" : "";
     out_ += v.declared_uniform ? " declared_uniform" : "";
     if (v.kind == VarKind::Const) {
@@ -142,7 +143,7 @@ void Printer::statement(const Stmt& s) {
         out_ += program_.vars[static_cast<std::size_t>(s.dst)].name + " = ";
     }
     out_ += op_info(s.op).text;
-    if (s.op == Op::Call) {
+    if (s.op == Op::Call || s.op == Op::Difference) {
         const BuiltinRow& row = builtin_of(s);
         out_ += ' ';
         quote(row.name);

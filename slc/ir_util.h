@@ -30,6 +30,14 @@ struct OpInfo {
     return i + (row.has(PropChannel) && i > 0 ? 1 : 0);
 }
 
+// The predefined variable itself, not one of its differences.
+[[nodiscard]] inline bool is_global(const Var& v) {
+    return v.kind == VarKind::Global && v.aux == 0;
+}
+[[nodiscard]] inline bool is_global(const Var& v, int id) {
+    return is_global(v) && v.index == id;
+}
+
 // Values held the same way: float, triple, matrix, string.
 [[nodiscard]] inline bool same_class(Type a, Type b) {
     return a == b || (is_triple(a) && is_triple(b));

@@ -27,6 +27,8 @@ private:
     bool shape(const Stmt& s);
     void types(const Stmt& s);
     void call(const Stmt& s);
+    void arguments(const Stmt& s, std::size_t num_args);
+    void difference(const Stmt& s);
     void details(const Stmt& s);
     [[nodiscard]] bool fits(VarId id, const ArgSpec& spec) const;
 
@@ -67,6 +69,11 @@ void Verifier::variables() {
         if (v.kind == VarKind::Global && (v.index < 0 || v.index >= SL_VAR_COUNT)) {
             complaints_.push_back("variable " + v.name + " is no predefined variable");
         }
+        const bool may_have_aux =
+            (v.kind == VarKind::Global || v.kind == VarKind::Param) && v.type != Type::String;
+        if (v.aux < 0 || v.aux > (may_have_aux ? 2 : 0)) {
+            complaints_.push_back("variable " + v.name + " has no place at the auxiliary points");
+        }
         if (v.kind == VarKind::Const && v.detail != Detail::Uniform) {
             complaints_.push_back("constant " + v.name + " is varying");
         }
@@ -98,7 +105,7 @@ bool Verifier::shape(const Stmt& s) {
     } else {
         ok = ok && (info.result == ResultUse::None || info.result == ResultUse::Optional);
     }
-    if (s.op == Op::Call) {
+    if (s.op == Op::Call || s.op == Op::Difference) {
         ok = ok && s.builtin >= 0 && static_cast<std::size_t>(s.builtin) < builtin_rows().size();
     }
     if (!ok) {
@@ -193,6 +200,9 @@ void Verifier::types(const Stmt& s) {
     case Op::Call:
         call(s);
         break;
+    case Op::Difference:
+        difference(s);
+        break;
     default:
         break;
     }
@@ -213,11 +223,34 @@ bool Verifier::fits(VarId id, const ArgSpec& spec) const {
 }
 
 void Verifier::call(const Stmt& s) {
+    arguments(s, s.args.size());
+}
+
+void Verifier::difference(const Stmt& s) {
+    const BuiltinRow& row = builtin_of(s);
+    const std::vector<int>& places = difference_places(s.builtin);
+    if (!row.has(PropDiff) || s.args.size() < 2 * places.size() || places.empty()) {
+        complain(s, "no difference of " + std::string(row.name) + " with these arguments");
+        return;
+    }
+    const std::size_t num_args = s.args.size() - places.size();
+    arguments(s, num_args);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const auto place = static_cast<std::size_t>(places[i]);
+        if (place >= num_args ||
+            !same_class(var(s.args[place]).type, var(s.args[num_args + i]).type)) {
+            complain(s, "a difference has another type than its argument");
+        }
+    }
+}
+
+// The first `num_args` operands are the row's arguments.
+void Verifier::arguments(const Stmt& s, std::size_t num_args) {
     const BuiltinRow& row = builtin_of(s);
     const std::size_t channel = row.has(PropChannel) ? 1 : 0;
     const std::size_t fixed = row.args.size() + channel;
     const bool extras = row.repeats_last || row.takes_pairs || row.takes_values;
-    if (s.args.size() < fixed || (s.args.size() > fixed && !extras)) {
+    if (num_args < fixed || (num_args > fixed && !extras)) {
         complain(s, "wrong number of arguments for " + std::string(row.name));
         return;
     }
@@ -227,7 +260,7 @@ void Verifier::call(const Stmt& s) {
                             " has the wrong type");
         }
     }
-    for (std::size_t i = fixed; i < s.args.size() && row.repeats_last; ++i) {
+    for (std::size_t i = fixed; i < num_args && row.repeats_last; ++i) {
         if (!fits(s.args[i], row.args.back())) {
             complain(s, "argument " + std::to_string(i + 1) + " of " + std::string(row.name) +
                             " has the wrong type");

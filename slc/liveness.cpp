@@ -17,10 +17,10 @@ bool VarSet::merge(const VarSet& other) {
     return grew;
 }
 
-std::uint64_t VarSet::globals() const {
+std::uint64_t VarSet::globals(int aux) const {
     std::uint64_t mask = 0;
     for (int i = 0; i < SL_VAR_COUNT; ++i) {
-        mask |= contains(global_slot(i)) ? 1ull << i : 0;
+        mask |= contains(global_slot(i, aux)) ? 1ull << i : 0;
     }
     return mask;
 }
@@ -73,7 +73,7 @@ std::uint64_t written_globals(const Program& program, const Block& b) {
     for (const Stmt& s : b) {
         for_each_write(s, [&](VarId id, bool) {
             const Var& v = program.vars[static_cast<std::size_t>(id)];
-            mask |= v.kind == VarKind::Global ? 1ull << v.index : 0;
+            mask |= is_global(v) ? 1ull << v.index : 0;
         });
         if (s.op == Op::Illuminate || s.op == Op::Solar) {
             mask |= 1ull << SL_VAR_L | 1ull << SL_VAR_Cl;

@@ -20,13 +20,14 @@ class VarSet {
 public:
     VarSet() = default;
     explicit VarSet(const Program& program)
-        : num_vars_(program.vars.size()), words_((num_vars_ + SL_VAR_COUNT + 63) / 64, 0) {}
+        : num_vars_(program.vars.size()), words_((num_vars_ + 3 * SL_VAR_COUNT + 63) / 64, 0) {}
     [[nodiscard]] std::size_t slot(const Program& program, VarId id) const {
         const Var& v = program.vars[static_cast<std::size_t>(id)];
-        return v.kind == VarKind::Global ? global_slot(v.index) : static_cast<std::size_t>(id);
+        return v.kind == VarKind::Global ? global_slot(v.index, v.aux)
+                                         : static_cast<std::size_t>(id);
     }
-    [[nodiscard]] std::size_t global_slot(int variable) const {
-        return num_vars_ + static_cast<std::size_t>(variable);
+    [[nodiscard]] std::size_t global_slot(int variable, int aux = 0) const {
+        return num_vars_ + static_cast<std::size_t>(aux * SL_VAR_COUNT + variable);
     }
     void insert(std::size_t slot) { words_[slot / 64] |= 1ull << (slot % 64); }
     void erase(std::size_t slot) { words_[slot / 64] &= ~(1ull << (slot % 64)); }
@@ -35,8 +36,8 @@ public:
     }
     // True if something was added.
     bool merge(const VarSet& other);
-    // Predefined variables as a needed mask.
-    [[nodiscard]] std::uint64_t globals() const;
+    // Predefined variables, or their differences at an auxiliary point, as a needed mask.
+    [[nodiscard]] std::uint64_t globals(int aux = 0) const;
 
 private:
     std::size_t num_vars_ = 0;

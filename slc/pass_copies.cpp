@@ -45,8 +45,7 @@ private:
 bool CopyPropagation::run() {
     for (std::size_t i = 0; i < program_.vars.size(); ++i) {
         const Var& v = program_.vars[i];
-        const bool is_light =
-            v.kind == VarKind::Global && v.index >= SL_VAR_L && v.index <= SL_VAR_Ol;
+        const bool is_light = is_global(v) && v.index >= SL_VAR_L && v.index <= SL_VAR_Ol;
         if (is_light) {
             lights_[v.index - SL_VAR_L] = static_cast<VarId>(i);
         }

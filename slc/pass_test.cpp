@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Passes on IR text, before and after; the text form and the verifier themselves.
+#include "slc/builtins.h"
 #include "slc/passes.h"
 #include "slc/slc_testing.h"
 
@@ -184,6 +185,59 @@ TEST(IrText, RejectsWhatIsBroken) {
     std::string error;
     EXPECT_FALSE(parse_ir(deep, error));
     EXPECT_NE(error.find("nested too deeply"), std::string::npos);
+}
+
+TEST(IrText, DifferencesOfPredefinedVariables) {
+    const std::string text = "surface \"t\"\n"
+                             "var s global varying float index 11 @0:1:1\n"
+                             "var s_u global varying float index 11 aux 1 @0:1:1\n"
+                             "var w param varying float index 0 @0:1:1\n"
+                             "var w_v param varying float index 0 aux 2 @0:1:1\n"
+                             "var k1 const uniform float = 0 @0:0:0\n"
+                             "var x local varying float @0:1:1\n"
+                             "default w {\n  w = copy k1 @0:1:1\n}\n"
+                             "body {\n  x = add s_u w_v @0:2:1\n}\n";
+    std::string error;
+    const auto program = parse_ir(text, error);
+    ASSERT_TRUE(program) << error;
+    EXPECT_EQ(print_ir(*program), text);
+    EXPECT_TRUE(verify_ir(*program).empty());
+    Program broken = *program;
+    broken.vars[5].aux = 1; // a local has its own variables for its differences
+    EXPECT_FALSE(verify_ir(broken).empty());
+    broken = *program;
+    broken.vars[1].aux = 3;
+    EXPECT_FALSE(verify_ir(broken).empty());
+}
+
+TEST(IrText, DifferencesOfBuiltins) {
+    // Only rows that have a body for it, with as many differences as numeric arguments.
+    const int step = find_builtin_by_body("smoothstep");
+    EXPECT_EQ(difference_places(step), (std::vector<int>{0, 1, 2}));
+    EXPECT_EQ(difference_places(find_builtin_by_body("spline_3")), (std::vector<int>{0}));
+    EXPECT_EQ(difference_places(find_builtin_by_body("min_f")), (std::vector<int>{0, 1}));
+    EXPECT_EQ(difference_places(find_builtin_by_body("texture_f_d")),
+              (std::vector<int>{2, 3, 4, 5, 6, 7}));
+    EXPECT_EQ(difference_places(find_builtin_by_body("fresnel")), (std::vector<int>{0, 1, 2}));
+    EXPECT_EQ(difference_places(find_builtin_by_body("transform_to")), (std::vector<int>{1}));
+    const std::string text = "surface \"t\"\n"
+                             "var s global varying float index 11 @0:1:1\n"
+                             "var s_u global varying float index 11 aux 1 @0:1:1\n"
+                             "var x local varying float @0:1:1\n"
+                             "body {\n  x = diff \"printf\" \"void(s,x*)\" s s_u @0:2:1\n}\n";
+    std::string error;
+    const auto program = parse_ir(text, error);
+    ASSERT_TRUE(program) << error;
+    EXPECT_EQ(print_ir(*program), text);
+    EXPECT_FALSE(verify_ir(*program).empty()) << "printf has no difference";
+}
+
+TEST(Builtins, HiddenRowsAreNotForUsers) {
+    EXPECT_GE(find_builtin_by_body("texture_c_d"), 0);
+    EXPECT_TRUE(find_builtins("texture_d").empty());
+    const auto c = testing::compile(testing::surface("Ci = texture_d(\"x\", s, t, 0, 0, 0, 0);"));
+    EXPECT_NE(c.unit.num_errors, 0U);
+    EXPECT_EQ(c.messages.find("texture_d\"?"), std::string::npos) << c.messages;
 }
 
 TEST(IrText, VerifierFindsBrokenInvariants) {

@@ -117,7 +117,9 @@ std::vector<std::string_view> Scopes::function_names() const {
         }
     }
     for (const BuiltinRow& row : builtin_rows()) {
-        names.push_back(row.name);
+        if (!row.has(PropHidden)) {
+            names.push_back(row.name);
+        }
     }
     return names;
 }

@@ -18,6 +18,7 @@ def table_names(path):
         return []
     with open(path, encoding="utf-8") as file:
         text = COMMENT.sub("", file.read())
+    text = "\n".join(line for line in text.splitlines() if "SL_HIDDEN" not in line)  # no user can call those
     return list(dict.fromkeys(ROW.findall(text)))
 
 

@@ -57,6 +57,7 @@ const sl_object& default_surface_object() {
         .needed = bit(SL_VAR_N) | bit(SL_VAR_I) | bit(SL_VAR_Cs) | bit(SL_VAR_Os),
         .written = bit(SL_VAR_Ci) | bit(SL_VAR_Oi),
         .needed_aux = 0,
+        .written_aux = 0,
         .num_strings = 0,
         .strings = nullptr,
         .num_variants = 1,

@@ -61,8 +61,8 @@ struct LitBlock {
     alignas(16) float lightcount;
 };
 const sl_param lit_params[] = {
-    {"cone", SL_TYPE_float, SL_DETAIL_uniform, 0, 0, offsetof(LitBlock, cone)},
-    {"category", SL_TYPE_string, SL_DETAIL_uniform, 0, 0, offsetof(LitBlock, category)},
+    {"cone", SL_TYPE_float, SL_DETAIL_uniform, 0, 0, offsetof(LitBlock, cone), 0},
+    {"category", SL_TYPE_string, SL_DETAIL_uniform, 0, 0, offsetof(LitBlock, category), 0},
 };
 void init_lit(const sl_init* in) {
     auto* block = static_cast<LitBlock*>(in->params);
@@ -119,8 +119,8 @@ struct TintBlock {
     alignas(16) float scale_default;
 };
 const sl_param tint_params[] = {
-    {"tint", SL_TYPE_color, SL_DETAIL_uniform, 0, 0, offsetof(TintBlock, tint)},
-    {"scale", SL_TYPE_float, SL_DETAIL_varying, 0, 0, offsetof(TintBlock, scale)},
+    {"tint", SL_TYPE_color, SL_DETAIL_uniform, 0, 0, offsetof(TintBlock, tint), 0},
+    {"scale", SL_TYPE_float, SL_DETAIL_varying, 0, 0, offsetof(TintBlock, scale), 0},
 };
 void init_tint(const sl_init* in) {
     auto* block = static_cast<TintBlock*>(in->params);
@@ -177,12 +177,12 @@ struct LightBlock {
     alignas(16) sl_string category;
 };
 const sl_param light_params[] = {
-    {"intensity", SL_TYPE_float, SL_DETAIL_uniform, 0, 0, offsetof(LightBlock, intensity)},
-    {"from", SL_TYPE_point, SL_DETAIL_uniform, 0, 0, offsetof(LightBlock, from)},
-    {"to", SL_TYPE_point, SL_DETAIL_uniform, 0, 0, offsetof(LightBlock, to)},
-    {"angle", SL_TYPE_float, SL_DETAIL_uniform, 0, 0, offsetof(LightBlock, angle)},
-    {"__nondiffuse", SL_TYPE_float, SL_DETAIL_uniform, 0, 0, offsetof(LightBlock, nondiffuse)},
-    {"__category", SL_TYPE_string, SL_DETAIL_uniform, 0, 0, offsetof(LightBlock, category)},
+    {"intensity", SL_TYPE_float, SL_DETAIL_uniform, 0, 0, offsetof(LightBlock, intensity), 0},
+    {"from", SL_TYPE_point, SL_DETAIL_uniform, 0, 0, offsetof(LightBlock, from), 0},
+    {"to", SL_TYPE_point, SL_DETAIL_uniform, 0, 0, offsetof(LightBlock, to), 0},
+    {"angle", SL_TYPE_float, SL_DETAIL_uniform, 0, 0, offsetof(LightBlock, angle), 0},
+    {"__nondiffuse", SL_TYPE_float, SL_DETAIL_uniform, 0, 0, offsetof(LightBlock, nondiffuse), 0},
+    {"__category", SL_TYPE_string, SL_DETAIL_uniform, 0, 0, offsetof(LightBlock, category), 0},
 };
 
 // Defaults point "shader" (0,0,0) and (0,0,1): only the matrix's columns are needed.

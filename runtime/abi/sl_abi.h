@@ -191,8 +191,10 @@ typedef struct sl_frame {
 } sl_frame;
 
 /* One batch. `params` follows sl_param.offset. Differences, not values, for the two auxiliary
- * points: aux_u holds X(u+du,v) - X(u,v), computed free of cancellation; NULL unless the object has
- * area operators. */
+ * points: aux_u holds X(u+du,v) - X(u,v), aux_v X(u,v+dv) - X(u,v), computed free of cancellation.
+ * Planes of the variables in needed_aux and written_aux; where the engine has none (a NULL record
+ * or plane) differences are 0 and results are not stored. du and dv (main) are the steps; either
+ * may be negative, neither is 0. */
 typedef struct sl_batch {
     const sl_points* main;
     const sl_points* aux_u;
@@ -219,6 +221,8 @@ typedef struct sl_param {
     int32_t array_length; /* 0: not an array */
     int32_t is_output;
     uint32_t offset;
+    int32_t needs_aux; /* varying numeric: after the planes of the values follow as many with the
+                          differences to u+du, then as many with those to v+dv; inputs only */
 } sl_param;
 
 /* What default expressions are evaluated with, once per instance. */
@@ -252,7 +256,7 @@ enum {
     SL_FACT_ambient = 2, /* calls ambient() */
     SL_FACT_directional =
         4, /* light: contains illuminate or solar, so it is not an ambient light */
-    SL_FACT_area_operators = 8, /* needs aux_u, aux_v */
+    SL_FACT_area_operators = 8, /* reads aux_u, aux_v or differences of parameters */
     SL_FACT_traces = 16,        /* may suspend for trace() and its relatives */
     SL_FACT_textures = 32,
     SL_FACT_object_space = 64, /* names a space that depends on the primitive: batch by transform */
@@ -272,9 +276,11 @@ typedef struct sl_object {
     const sl_param* params;
     uint32_t params_size; /* bytes of the parameter block */
     uint32_t facts;
-    uint64_t needed;     /* variables that must be filled */
-    uint64_t written;    /* variables the shader may change */
-    uint64_t needed_aux; /* variables needed at the auxiliary points */
+    uint64_t needed;      /* variables that must be filled */
+    uint64_t written;     /* variables the shader may change */
+    uint64_t needed_aux;  /* variables whose differences at the auxiliary points are read */
+    uint64_t written_aux; /* displacement: variables (of P, N, s, t) whose differences it stores to
+                             aux_u and aux_v: those that differ from what it was given */
     int32_t num_strings;
     const char* const* strings; /* literals, to be interned by the loader */
     int32_t num_variants;

@@ -52,6 +52,22 @@ V FN(calculatenormal)(CALL, V p) {
     const V n = FN(normal_at_)(PASS, SL_VAR_N), ng = FN(normal_at_)(PASS, SL_VAR_Ng);
     return FN(select_3)(LT(FN(dot_3)(n, ng), K(0)), FN(neg_3)(n), n);
 }
+/* p_u ^ p_v / (du dv), on the side to which Ng lies from dPdu ^ dPdv (sl.md 4.2): the orientation
+ * decides, not Ng itself, so that steep displacements may turn away from it. Where p does not span
+ * a surface: N. */
+V FN(calculatenormal_d)(CALL, V p_u, V p_v) {
+    const V n = FN(normal_at_)(PASS, SL_VAR_N), ng = FN(normal_at_)(PASS, SL_VAR_Ng);
+    const V across =
+        FN(cross_3)(FN(normal_at_)(PASS, SL_VAR_dPdu), FN(normal_at_)(PASS, SL_VAR_dPdv));
+    const F steps = FN(step_at_)(PASS, SL_VAR_du) * FN(step_at_)(PASS, SL_VAR_dv);
+    const F scale = SEL(EQ(steps, K(0)), K(0), K(1) / SEL(EQ(steps, K(0)), K(1), steps));
+    const V normal = FN(scale_3)(FN(cross_3)(p_u, p_v), scale);
+    const F side = FN(dot_3)(across, ng);
+    const F turned = SEL(EQ(side, K(0)), FN(dot_3)(normal, ng), side);
+    const V oriented = FN(select_3)(LT(turned, K(0)), FN(neg_3)(normal), normal);
+    const F length2 = FN(dot_3)(oriented, oriented);
+    return FN(select_3)(LT(K(0), length2) & LT(length2, K(3e38f)), oriented, n);
+}
 F FN(filterstep)(CALL, F edge, F x, const sl_value* values, int n) {
     (void)values, (void)n;
     report(call, "filterstep(): derivatives are not computed in this version; the step is hard");

@@ -186,6 +186,8 @@ V FN(bump_st)(CALL, sl_string name, float channel, V n, V dPds, V dPdt, F s, F t
               const sl_value* values, int num) OUT(bump_st);
 V FN(bump_quad)(CALL, sl_string name, float channel, V n, V dPds, V dPdt, F s1, F t1, F s2, F t2,
                 F s3, F t3, F s4, F t4, const sl_value* values, int num) OUT(bump_quad);
+/* what area operators become: with the differences at u + du (_u) and v + dv (_v) */
+V FN(calculatenormal_d)(CALL, V p_u, V p_v) OUT(calculatenormal_d);
 F FN(textureinfo)(CALL, sl_string name, sl_string key, const sl_value* out) OUT(textureinfo);
 void FN(bake_f)(CALL, sl_string file, F s, F t, F value) OUT(bake_f);
 void FN(bake_3)(CALL, sl_string file, F s, F t, V value) OUT(bake_3);

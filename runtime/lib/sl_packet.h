@@ -168,6 +168,24 @@ SL_INLINE slu3 slu_var_3(const sl_call* call, int id) {
     return slu_make_3(base[0], base[1], base[2]);
 }
 
+/* Differences at an auxiliary point: 0 where the engine has no record or no plane. */
+SL_INLINE slf slv_aux_f(const sl_call* call, const sl_points* points, int id) {
+    return points && points->var[id] ? sl_load_f(call, points->var[id]) : (slf){0};
+}
+SL_INLINE slv slv_aux_3(const sl_call* call, const sl_points* points, int id) {
+    const slf zero = {0};
+    return points && points->var[id] ? sl_load_3(call, points->var[id])
+                                     : slv_make_3(zero, zero, zero);
+}
+SL_INLINE void sl_store_aux_f(const sl_call* call, const sl_points* points, int id, slf a) {
+    if (points && points->var[id])
+        sl_store_f(call, call->live, points->var[id], a);
+}
+SL_INLINE void sl_store_aux_3(const sl_call* call, const sl_points* points, int id, slv a) {
+    if (points && points->var[id])
+        sl_store_3(call, call->live, points->var[id], a);
+}
+
 /* --- arrays of lanes with an index per lane; indices come from slv_index, so they are in range
  * --------------------- */
 

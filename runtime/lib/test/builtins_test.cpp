@@ -427,14 +427,18 @@ TEST(Builtins, EveryRowHasATest) {
     add(filters);
     bodies.insert("arraylength"); // EdgeCasesOfTheSpecification
     static constexpr struct {
-        const char *row, *body;
+        const char *row, *body, *properties;
     } rows[] = {
-#define SL_BUILTIN(name, signature, body, reads, properties, note) {#name " " signature, #body},
+#define SL_BUILTIN(name, signature, body, reads, properties, note)                                 \
+    {#name " " signature, #body, #properties},
 #include "runtime/abi/sl_builtins.def"
 #undef SL_BUILTIN
     };
-    for (const auto& row : rows)
-        EXPECT_TRUE(bodies.count(row.body)) << "no test of " << row.row << " (" << row.body << ")";
+    for (const auto& row : rows) { // hidden ones: slc/oracle_test.cpp, the maps' own tests
+        const bool hidden = std::string(row.properties).find("SL_HIDDEN") != std::string::npos;
+        EXPECT_TRUE(hidden || bodies.count(row.body))
+            << "no test of " << row.row << " (" << row.body << ")";
+    }
 }
 
 } // namespace

@@ -421,6 +421,19 @@ std::size_t to_camera(const ShapeTable& table, const Hit& hit, rib::ParamType ty
     return 1;
 }
 
+// The same for a difference of two values; value is the one it starts from.
+std::size_t difference_to_camera(const ShapeTable& table, const Hit& hit, rib::ParamType type,
+                                 const double* value, double* d) {
+    if (type == rib::ParamType::HPoint && value[3] != 0 && value[3] + d[3] != 0) {
+        const V3d at = vec(value) / value[3]; // (x + dx)/(w + dw) - x/w
+        const V3d change = table.cam_vector(hit, (vec(d) - at * d[3]) / (value[3] + d[3]));
+        std::copy_n(&change.x, 3, d);
+        return 3;
+    }
+    const bool moves = type == rib::ParamType::Point || type == rib::ParamType::HPoint;
+    return to_camera(table, hit, moves ? rib::ParamType::Vector : type, d);
+}
+
 constexpr double float_eps = 1.0 / (1 << 24); // half an ulp of 1: the relative rounding error
 
 // |v| through |M|: how far an error in the source can reach in the destination.
@@ -457,6 +470,36 @@ void fill_variable(const ShapeTable& table, std::span<const Hit> hits, const rib
             for (std::size_t k = 0; k < n; ++k, ++plane) {
                 out[plane * stride + i] = static_cast<float>(value[element + k]);
             }
+        }
+    }
+}
+
+void fill_variable_differences(const ShapeTable& table, std::span<const Hit> hits,
+                               const rib::Param& param, const AuxiliaryPlanes& planes) {
+    const std::size_t width = floats_per_item(param.decl);
+    const auto each = static_cast<std::size_t>(rib::components(param.decl.type));
+    std::vector<double> value(width), change(width);
+    const auto fill = [&](std::size_t i, double du, double dv, float* out) {
+        const Hit& hit = hits[i];
+        const Surface& surface = *table.shapes[hit.shape].surface;
+        const LocalPoint at{hit.part, hit.u, hit.v};
+        interpolate(param, surface, at, value.data());
+        interpolate_difference(param, surface, at, surface.step(at, du, dv), change.data());
+        std::size_t plane = 0;
+        for (std::size_t element = 0; element < width; element += each) {
+            const std::size_t n = difference_to_camera(table, hit, param.decl.type, &value[element],
+                                                       &change[element]);
+            for (std::size_t k = 0; k < n; ++k, ++plane) {
+                out[plane * planes.stride + i] = static_cast<float>(change[element + k]);
+            }
+        }
+    };
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+        if (planes.out_u) {
+            fill(i, static_cast<double>(planes.du[i]), 0, planes.out_u);
+        }
+        if (planes.out_v) {
+            fill(i, 0, static_cast<double>(planes.dv[i]), planes.out_v);
         }
     }
 }

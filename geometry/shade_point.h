@@ -26,6 +26,11 @@ void fill_points(const ShapeTable& table, const FillRequest& request);
 void fill_variable(const ShapeTable& table, std::span<const Hit> hits, const rib::Param& param,
                    std::uint32_t stride, float* out);
 
+// Differences of one primitive variable to the auxiliary points du and dv away, per hit; planes as
+// above.
+void fill_variable_differences(const ShapeTable& table, std::span<const Hit> hits,
+                               const rib::Param& param, const AuxiliaryPlanes& planes);
+
 // See World::spawn_origin.
 [[nodiscard]] V3f spawn_point(const ShapeTable& table, const Hit& hit, const V3f& direction);
 

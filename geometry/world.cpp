@@ -75,6 +75,14 @@ public:
         }
     }
 
+    void fill_primitive_differences(std::span<const Hit> hits, std::string_view name,
+                                    const AuxiliaryPlanes& planes) const override {
+        const rib::Param* param = hits.empty() ? nullptr : primitive_variable(hits.front(), name);
+        if (param && param->decl.type != rib::ParamType::String) {
+            fill_variable_differences(table_, hits, *param, planes);
+        }
+    }
+
     [[nodiscard]] V3f spawn_origin(const Hit& hit, const V3f& direction) const override {
         return spawn_point(table_, hit, direction);
     }

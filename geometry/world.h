@@ -62,6 +62,14 @@ struct Stats {
     double build_seconds = 0;
 };
 
+// Where differences of a primitive variable go: steps per hit, planes of stride floats; a NULL base
+// is skipped.
+struct AuxiliaryPlanes {
+    const float *du, *dv;
+    std::uint32_t stride;
+    float *out_u, *out_v;
+};
+
 class World {
 public:
     // Reports degenerate geometry and leaves it out. scene must outlive the World.
@@ -96,6 +104,9 @@ public:
     // another.
     virtual void fill_primitive_variable(std::span<const Hit> hits, std::string_view name,
                                          std::uint32_t stride, float* out) const = 0;
+    // Its differences to the auxiliary points of the steps that fill() gave.
+    virtual void fill_primitive_differences(std::span<const Hit> hits, std::string_view name,
+                                            const AuxiliaryPlanes& planes) const = 0;
 
     // Where a ray leaving the hit may start without meeting the surface again: P moved along Ng
     // towards direction by a bound of the rounding errors of P. [pbrt4] 6.8; no global epsilon.

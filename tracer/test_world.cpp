@@ -85,6 +85,20 @@ void SheetWorld::fill_primitive_variable(std::span<const geo::Hit> hits, std::st
     }
 }
 
+// Varying values go with u; nothing changes along v.
+void SheetWorld::fill_primitive_differences(std::span<const geo::Hit> hits, std::string_view name,
+                                            const geo::AuxiliaryPlanes& planes) const {
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+        const rib::Param& param = *primitive_variable(hits[i], name);
+        const bool varies = param.decl.storage != rib::StorageClass::Constant;
+        for (std::size_t k = 0; k < param.floats.size(); ++k) {
+            const std::size_t at = k * planes.stride + i;
+            planes.out_u[at] = varies ? param.floats[k] * planes.du[i] : 0;
+            planes.out_v[at] = 0;
+        }
+    }
+}
+
 base::V3f SheetWorld::spawn_origin(const geo::Hit& hit, const base::V3f& direction) const {
     const float z = sheets_[hit.shape].z;
     return {hit.u, hit.v, z + (direction.z > 0 ? 1e-5f : -1e-5f) * z};

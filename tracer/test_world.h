@@ -36,6 +36,8 @@ public:
     // varying variables: their value times the x of the hit
     void fill_primitive_variable(std::span<const geo::Hit> hits, std::string_view name,
                                  std::uint32_t stride, float* out) const override;
+    void fill_primitive_differences(std::span<const geo::Hit> hits, std::string_view name,
+                                    const geo::AuxiliaryPlanes& planes) const override;
     base::V3f spawn_origin(const geo::Hit& hit, const base::V3f& direction) const override;
     base::Mat4 camera_from_object(const geo::Hit& hit, float time) const override;
     const geo::Stats& stats() const override { return stats_; }

@@ -142,20 +142,28 @@ typedef struct FN(place4_) {
     F a[4], period[4];
 } FN(place4_);
 
+SL_INLINE F FN(rounded_period_)(F period) {
+    return FN(lesser_f)(FN(greater_f)(FN(floor)(period + 0.5f), K(1)), K(0x1p23f));
+}
+
 /* The lattice around a point, before or after a step. */
 typedef struct FN(cell4_) {
     FN(axis_) axis[4];
-    F whole[4];
+    I index[4]; /* of the lower corner, 0 .. period-1 if periodic */
 } FN(cell4_);
 
 static const uint32_t FN(primes_)[4] = {NOISE_P0, NOISE_P1, NOISE_P2, NOISE_P3};
 
 /* One axis whose index and offset are known. */
-SL_INLINE FN(axis_) FN(axis_at_)(F whole, F f, F period, int dims, int k, int periodic) {
+SL_INLINE FN(axis_) FN(axis_at_)(I index, F f, F period, int dims, int k, int periodic) {
     const uint32_t seed = k == 0 ? NOISE_SEED((uint32_t)dims) : 0;
-    FN(axis_)
-    r = periodic ? FN(closed_axis_)(whole, period, FN(primes_)[k], seed)
-                 : FN(open_axis_)(whole, FN(primes_)[k], seed);
+    FN(axis_) r;
+    r.lower = FN(add_i)(FN(mul_i)(index, FN(primes_)[k]), KI((int)seed));
+    r.upper = FN(add_i)(r.lower, KI((int)FN(primes_)[k]));
+    if (periodic) {
+        const F last = FN(rounded_period_)(period) - 1.0f;
+        r.upper = FN(select_i)(LE(last, FN(float_of_i)(index)), KI((int)seed), r.upper);
+    }
     r.f = f;
     r.w = FN(fade_)(f);
     return r;
@@ -164,27 +172,34 @@ SL_INLINE FN(axis_) FN(axis_at_)(F whole, F f, F period, int dims, int k, int pe
 SL_INLINE FN(cell4_) FN(cell_around_)(const FN(place4_) * p, int dims, int periodic) {
     FN(cell4_) r;
     NOISE_UNROLL for (int k = 0; k < dims; k++) {
-        r.whole[k] = FN(floor)(p->a[k]);
-        r.axis[k] = FN(axis_at_)(r.whole[k], p->a[k] - r.whole[k], p->period[k], dims, k, periodic);
+        const F whole = FN(floor)(p->a[k]);
+        r.index[k] = FN(whole_of_f)(
+            periodic ? FN(wrapped_)(whole, FN(rounded_period_)(p->period[k])) : whole);
+        r.axis[k] = FN(axis_at_)(r.index[k], p->a[k] - whole, p->period[k], dims, k, periodic);
     }
     return r;
 }
 
+/* Cells are counted in integers: at positions from 2^24 on floats cannot. */
 SL_INLINE FN(cell4_) FN(cell_after_)(const FN(cell4_) * from, const FN(place4_) * p,
                                      const FN(place4_) * d, int dims, int periodic) {
     FN(cell4_) r;
     NOISE_UNROLL for (int k = 0; k < dims; k++) {
         const F sum = from->axis[k].f + d->a[k], crossed = FN(floor)(sum);
-        r.whole[k] = from->whole[k] + crossed;
-        r.axis[k] =
-            FN(axis_at_)(r.whole[k], sum - crossed,
-                         periodic ? p->period[k] + d->period[k] : p->period[k], dims, k, periodic);
+        F period = p->period[k];
+        if (periodic) {
+            const F size0 = FN(rounded_period_)(period),
+                    size = FN(rounded_period_)(period + d->period[k]);
+            const F kept = FN(wrapped_)(FN(float_of_i)(from->index[k]) + crossed, size);
+            const F other = FN(wrapped_)(FN(floor)(p->a[k]) + crossed, size);
+            r.index[k] = FN(whole_of_f)(SEL(EQ(size, size0), kept, other));
+            period = size;
+        } else {
+            r.index[k] = FN(add_i)(from->index[k], FN(whole_of_f)(crossed));
+        }
+        r.axis[k] = FN(axis_at_)(r.index[k], sum - crossed, period, dims, k, periodic);
     }
     return r;
-}
-
-SL_INLINE F FN(rounded_period_)(F period) {
-    return FN(lesser_f)(FN(greater_f)(FN(floor)(period + 0.5f), K(1)), K(0x1p23f));
 }
 
 /* Where the step must be taken as a difference of two values. */
@@ -357,39 +372,51 @@ V FN(pnoise_3_4_d)(V p, F t, V pp, F pt, V dp, F dt, V dpp, F dpt) {
 /* --- cells: 0, or the jump into the cell that a + d lies in
  * ------------------------------------------------------- */
 
-SL_INLINE F FN(cell_moved_)(F a, F d) {
-    return FN(floor)(a) + FN(floor_d)(a, d);
+SL_INLINE I FN(cell_moved_)(F a, F d) {
+    return FN(add_i)(FN(cell_index_)(a), FN(whole_of_f)(FN(floor_d)(a, d)));
 }
-SL_INLINE V FN(cell_moved_3_)(V a, V d) {
-    return FN(make_3)(FN(cell_moved_)(a.x, d.x), FN(cell_moved_)(a.y, d.y),
-                      FN(cell_moved_)(a.z, d.z));
+
+/* Hashes of the cells of a point and of the point moved. */
+SL_INLINE I FN(cell_hash_)(const FN(place4_) * p, const FN(place4_) * d, int dims, int moves) {
+    I h = KI(0);
+    NOISE_UNROLL for (int k = 0; k < dims; k++) {
+        const I index = moves ? FN(cell_moved_)(p->a[k], d->a[k]) : FN(cell_index_)(p->a[k]);
+        const I term = FN(mul_i)(index, FN(primes_)[k]);
+        h = k == 0 ? FN(add_i)(term, KI((int)(CELL_SEED * (uint32_t)dims))) : h ^ term;
+    }
+    return h;
+}
+
+SL_INLINE F FN(cell_change_)(FN(place4_) p, FN(place4_) d, int dims) {
+    const I before = FN(cell_hash_)(&p, &d, dims, 0), after = FN(cell_hash_)(&p, &d, dims, 1);
+    return FN(cell_value_)(after, K(0)) - FN(cell_value_)(before, K(0));
+}
+SL_INLINE V FN(cell_changes_)(FN(place4_) p, FN(place4_) d, int dims) {
+    const I before = FN(cell_hash_)(&p, &d, dims, 0), after = FN(cell_hash_)(&p, &d, dims, 1);
+    return FN(sub_3)(FN(cell_channels_)(after, K(0)), FN(cell_channels_)(before, K(0)));
 }
 
 F FN(cellnoise_f_1_d)(F x, F dx) {
-    return FN(cellnoise_f_1)(FN(cell_moved_)(x, dx)) - FN(cellnoise_f_1)(x);
+    return FN(cell_change_)(FN(place_1_)(x), FN(place_1_)(dx), 1);
 }
 F FN(cellnoise_f_2_d)(F x, F y, F dx, F dy) {
-    return FN(cellnoise_f_2)(FN(cell_moved_)(x, dx), FN(cell_moved_)(y, dy)) -
-           FN(cellnoise_f_2)(x, y);
+    return FN(cell_change_)(FN(place_2_)(x, y), FN(place_2_)(dx, dy), 2);
 }
 F FN(cellnoise_f_3_d)(V p, V dp) {
-    return FN(cellnoise_f_3)(FN(cell_moved_3_)(p, dp)) - FN(cellnoise_f_3)(p);
+    return FN(cell_change_)(FN(place_3_)(p), FN(place_3_)(dp), 3);
 }
 F FN(cellnoise_f_4_d)(V p, F t, V dp, F dt) {
-    return FN(cellnoise_f_4)(FN(cell_moved_3_)(p, dp), FN(cell_moved_)(t, dt)) -
-           FN(cellnoise_f_4)(p, t);
+    return FN(cell_change_)(FN(place_4_)(p, t), FN(place_4_)(dp, dt), 4);
 }
 V FN(cellnoise_3_1_d)(F x, F dx) {
-    return FN(sub_3)(FN(cellnoise_3_1)(FN(cell_moved_)(x, dx)), FN(cellnoise_3_1)(x));
+    return FN(cell_changes_)(FN(place_1_)(x), FN(place_1_)(dx), 1);
 }
 V FN(cellnoise_3_2_d)(F x, F y, F dx, F dy) {
-    return FN(sub_3)(FN(cellnoise_3_2)(FN(cell_moved_)(x, dx), FN(cell_moved_)(y, dy)),
-                     FN(cellnoise_3_2)(x, y));
+    return FN(cell_changes_)(FN(place_2_)(x, y), FN(place_2_)(dx, dy), 2);
 }
 V FN(cellnoise_3_3_d)(V p, V dp) {
-    return FN(sub_3)(FN(cellnoise_3_3)(FN(cell_moved_3_)(p, dp)), FN(cellnoise_3_3)(p));
+    return FN(cell_changes_)(FN(place_3_)(p), FN(place_3_)(dp), 3);
 }
 V FN(cellnoise_3_4_d)(V p, F t, V dp, F dt) {
-    return FN(sub_3)(FN(cellnoise_3_4)(FN(cell_moved_3_)(p, dp), FN(cell_moved_)(t, dt)),
-                     FN(cellnoise_3_4)(p, t));
+    return FN(cell_changes_)(FN(place_4_)(p, t), FN(place_4_)(dp, dt), 4);
 }

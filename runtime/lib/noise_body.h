@@ -58,46 +58,24 @@ V FN(pnoise_3_4)(V p, F t, V pp, F pt) {
  * --------------------------------------------------------------------------------------------------------
  */
 
-SL_INLINE I FN(finish_)(I h) {
-    h = h ^ FN(shr_i)(h, 16);
-    h = FN(mul_i)(h, 0x85ebca6bu);
-    h = h ^ FN(shr_i)(h, 13);
-    h = FN(mul_i)(h, 0xc2b2ae35u);
-    return h ^ FN(shr_i)(h, 16);
-}
-
-SL_INLINE F FN(unit_of_hash_)(I h) { /* [0,1) in steps of 2^-24 */
-    return FN(float_of_i)(FN(shr_i)(h, 8)) * 0x1p-24f;
-}
-
 SL_INLINE I FN(cell_)(F a, uint32_t prime) {
-    return FN(mul_i)(FN(whole_of_f)(FN(floor)(a)), prime);
+    return FN(mul_i)(FN(cell_index_)(a), prime);
 }
 
 SL_INLINE I FN(cell_1_)(F x) {
-    return FN(add_i)(FN(cell_)(x, NOISE_P0), KI(0x7f4a7c15));
+    return FN(add_i)(FN(cell_)(x, NOISE_P0), KI((int)CELL_SEED));
 }
 SL_INLINE I FN(cell_2_)(F x, F y) {
-    const I seeded = FN(add_i)(FN(cell_)(x, NOISE_P0), KI((int)(2 * 0x7f4a7c15u)));
+    const I seeded = FN(add_i)(FN(cell_)(x, NOISE_P0), KI((int)(2 * CELL_SEED)));
     return seeded ^ FN(cell_)(y, NOISE_P1);
 }
 SL_INLINE I FN(cell_3_)(V p) {
-    const I seeded = FN(add_i)(FN(cell_)(p.x, NOISE_P0), KI((int)(3 * 0x7f4a7c15u)));
+    const I seeded = FN(add_i)(FN(cell_)(p.x, NOISE_P0), KI((int)(3 * CELL_SEED)));
     return seeded ^ FN(cell_)(p.y, NOISE_P1) ^ FN(cell_)(p.z, NOISE_P2);
 }
 SL_INLINE I FN(cell_4_)(V p, F t) {
-    const I seeded = FN(add_i)(FN(cell_)(p.x, NOISE_P0), KI((int)(4 * 0x7f4a7c15u)));
+    const I seeded = FN(add_i)(FN(cell_)(p.x, NOISE_P0), KI((int)(4 * CELL_SEED)));
     return seeded ^ FN(cell_)(p.y, NOISE_P1) ^ FN(cell_)(p.z, NOISE_P2) ^ FN(cell_)(t, NOISE_P3);
-}
-
-/* probe: 0 times the coordinates; anything but 0 comes from NaN or infinity. */
-SL_INLINE F FN(cell_value_)(I h, F probe) {
-    return SEL(EQ(probe, K(0)), FN(unit_of_hash_)(FN(finish_)(h)), K(0.5f));
-}
-SL_INLINE V FN(cell_channels_)(I h, F probe) {
-    return FN(make_3)(FN(cell_value_)(h, probe),
-                      FN(cell_value_)(FN(add_i)(h, KI((int)0x9e3779b9u)), probe),
-                      FN(cell_value_)(FN(add_i)(h, KI(0x3c6ef372)), probe));
 }
 
 F FN(cellnoise_f_1)(F x) {

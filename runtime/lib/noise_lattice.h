@@ -56,13 +56,17 @@ SL_INLINE FN(axis_) FN(open_axis_)(F a, uint32_t prime, uint32_t seed) {
     return r;
 }
 
+/* An integer modulo the period p. */
+SL_INLINE F FN(wrapped_)(F whole, F p) {
+    F low = whole - p * FN(floor)(whole / p);
+    low = SEL(LT(low, K(0)), low + p, low); /* the quotient may round across an integer */
+    return SEL(LE(p, low), low - p, low);
+}
+
 SL_INLINE FN(axis_) FN(closed_axis_)(F a, F period, uint32_t prime, uint32_t seed) {
     const F one = K(1), zero = K(0);
     const F p = FN(lesser_f)(FN(greater_f)(FN(floor)(period + 0.5f), one), K(0x1p23f));
-    const F whole = FN(floor)(a);
-    F low = whole - p * FN(floor)(whole / p);
-    low = SEL(LT(low, zero), low + p, low); /* the quotient may round across an integer */
-    low = SEL(LE(p, low), low - p, low);
+    const F whole = FN(floor)(a), low = FN(wrapped_)(whole, p);
     const F high = SEL(LE(p, low + 1.0f), zero, low + 1.0f);
     FN(axis_) r;
     r.lower = FN(add_i)(FN(mul_i)(FN(whole_of_f)(low), prime), KI((int)seed));
@@ -217,3 +221,35 @@ SL_INLINE V FN(channels_4_)(FN(axis_) x, FN(axis_) y, FN(axis_) z, FN(axis_) t) 
 #define CLOSED_Y(a, p)    FN(closed_axis_)(a, p, NOISE_P1, 0)
 #define CLOSED_Z(a, p)    FN(closed_axis_)(a, p, NOISE_P2, 0)
 #define CLOSED_T(a, p)    FN(closed_axis_)(a, p, NOISE_P3, 0)
+
+/* --- cells
+ * --------------------------------------------------------------------------------------------------------
+ */
+
+SL_INLINE I FN(finish_)(I h) {
+    h = h ^ FN(shr_i)(h, 16);
+    h = FN(mul_i)(h, 0x85ebca6bu);
+    h = h ^ FN(shr_i)(h, 13);
+    h = FN(mul_i)(h, 0xc2b2ae35u);
+    return h ^ FN(shr_i)(h, 16);
+}
+
+SL_INLINE F FN(unit_of_hash_)(I h) { /* [0,1) in steps of 2^-24 */
+    return FN(float_of_i)(FN(shr_i)(h, 8)) * 0x1p-24f;
+}
+
+#define CELL_SEED 0x7f4a7c15u
+
+SL_INLINE I FN(cell_index_)(F a) {
+    return FN(whole_of_f)(FN(floor)(a));
+}
+
+/* probe: 0 times the coordinates; anything but 0 comes from NaN or infinity. */
+SL_INLINE F FN(cell_value_)(I h, F probe) {
+    return SEL(EQ(probe, K(0)), FN(unit_of_hash_)(FN(finish_)(h)), K(0.5f));
+}
+SL_INLINE V FN(cell_channels_)(I h, F probe) {
+    return FN(make_3)(FN(cell_value_)(h, probe),
+                      FN(cell_value_)(FN(add_i)(h, KI((int)0x9e3779b9u)), probe),
+                      FN(cell_value_)(FN(add_i)(h, KI(0x3c6ef372)), probe));
+}

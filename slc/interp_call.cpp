@@ -141,10 +141,6 @@ bool Interpreter::lighting(const Stmt& s, int point, Value& result) {
     const std::string_view body = builtin_of(s).body;
     if (body == "ambient") {
         put(result, host_.ambient(point, global3(SL_VAR_P, point)));
-    } else if (body == "specularbrdf") {
-        const double f = specular_brdf(at(s.args[0], point).triple(), at(s.args[1], point).triple(),
-                                       at(s.args[2], point).triple(), at(s.args[3], point).f());
-        put(result, {f, f, f});
     } else if (builtin_of(s).has(PropLights)) {
         put(result, illuminate_sum(s, point));
     } else {
@@ -233,6 +229,10 @@ bool Interpreter::state(const Stmt& s, int point, std::vector<Value>& args, Valu
     const BuiltinRow& row = builtin_of(s);
     if (row.has(PropRandom)) {
         random(point, s.dst != no_var && var(s.dst).detail == Detail::Uniform, result);
+    } else if (row.body == "specularbrdf") {
+        const double f =
+            specular_brdf(args[0].triple(), args[1].triple(), args[2].triple(), args[3].f());
+        put(result, {f, f, f});
     } else if (row.body == "faceforward") {
         const bool has_Ng =
             (variable_rows()[SL_VAR_Ng].readable & shader_type_bit(program_.shader_type)) != 0;

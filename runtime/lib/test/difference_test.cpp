@@ -601,6 +601,43 @@ TEST_F(DifferencesInABatch, NormalsByAConstantAndAMovingMatrix) {
 
 // --- what holds for all
 
+// A row that promises a difference body has one, and a case that calls it.
+TEST(Differences, EveryRowThatPromisesOneHasOne) {
+    enum : unsigned {
+        SL_DIFF = 1,
+        SL_PURE = 0,
+        SL_CONTEXT = 0,
+        SL_VARIES = 0,
+        SL_EFFECT = 0,
+        SL_LIGHTS = 0,
+        SL_AREA = 0,
+        SL_TRACES = 0,
+        SL_TEXTURES = 0,
+        SL_MESSAGE = 0,
+        SL_SPACES = 0,
+        SL_STATE = 0,
+        SL_RANDOM = 0,
+        SL_INOUT = 0,
+        SL_CHANNEL = 0,
+        SL_LINEAR = 0,
+        SL_HIDDEN = 0
+    };
+    static constexpr struct {
+        const char *row, *body;
+        unsigned properties;
+    } rows[] = {
+#define SL_BUILTIN(name, signature, body, reads, properties, note)                                 \
+    {#name " " signature, #body "_d", properties},
+#include "runtime/abi/sl_builtins.def"
+#undef SL_BUILTIN
+    };
+    std::set<std::string> bodies;
+    for (int i = 0; i < lanes_api_4.num_cases; i++)
+        bodies.insert(lanes_api_4.cases[i].body);
+    for (const auto& row : rows)
+        EXPECT_TRUE((row.properties & SL_DIFF) == 0 || bodies.count(row.body)) << row.row;
+}
+
 TEST(Differences, FiniteFromFiniteAndZeroFromNoStep) {
     const float values[] = {0,      -0.0f, 1,     -1,     0.5f,    2,        1e-30f,  -1e-30f,
                             1e-40f, 1e6f,  1e30f, -1e30f, 3.4e38f, -3.4e38f, 16777216};

@@ -60,6 +60,18 @@ std::string type_text(int type, int array_length) {
     return array_length > 0 ? text + "[" + std::to_string(array_length) + "]" : text;
 }
 
+bool have_same_block(const ShaderObject& a, const ShaderObject& b) {
+    const sl_object &x = a.object(), &y = b.object();
+    const auto same = [](const sl_param& p, const sl_param& q) {
+        return std::strcmp(p.name, q.name) == 0 && p.type == q.type && p.detail == q.detail &&
+               p.array_length == q.array_length && p.is_output == q.is_output &&
+               p.offset == q.offset;
+    };
+    return x.type == y.type && x.params_size == y.params_size && x.num_params == y.num_params &&
+           std::equal(x.params, x.params + x.num_params, y.params, same) &&
+           a.variant().lanes == b.variant().lanes;
+}
+
 ShaderInstance::ShaderInstance(const ShaderObject& object, std::span<const BoundValue> values,
                                const sl_services& services, void* engine, StringTable& strings,
                                base::Diag& diag)

@@ -107,12 +107,14 @@ struct ShaderLibrary::Impl {
     std::map<std::string, std::unique_ptr<ShaderObject>, std::less<>> by_file;
     std::vector<std::unique_ptr<ShaderObject>> nameless;             // linked in, or in memory
     std::map<std::string, const ShaderObject*, std::less<>> adopted; // by name of the shader
+    std::map<std::string, const ShaderObject*, std::less<>> special; // made in this run, by key
     std::map<std::string, Name, std::less<>> names;
     std::map<std::string, Job, std::less<>> jobs; // by file
     std::atomic<bool> is_ending{false};
     struct Counts {
-        std::atomic<std::uint64_t> objects{0}, cache_hits{0}, cache_misses{0}, compiled{0};
-        std::atomic<std::uint64_t> search_ns{0}, compile_ns{0}, load_ns{0};
+        std::atomic<std::uint64_t> objects{0}, cache_hits{0}, cache_misses{0}, compiled{0},
+            compiled_special{0};
+        std::atomic<std::uint64_t> search_ns{0}, compile_ns{0}, special_ns{0}, load_ns{0};
     } counts;
     const Cancelled cancelled;
     base::WorkQueue queue; // last: its threads use the rest
@@ -254,6 +256,44 @@ struct ShaderLibrary::Impl {
         job_done.notify_all();
     }
 
+    // --- special shaders, on any thread, without the mutex
+
+    const ShaderObject* known_special(const std::string& key) {
+        {
+            const std::lock_guard lock(mutex);
+            if (const auto it = special.find(key); it != special.end()) {
+                return it->second;
+            }
+        }
+        const std::string path = cache.object_path(key);
+        std::string why; // most have never been made
+        const ShaderObject* object = cache.is_on() ? open(path, why) : nullptr;
+        if (object) {
+            ShaderCache::mark_used(path);
+        }
+        return object;
+    }
+
+    const ShaderObject* make_special(const SpecialShader& order, const Cancelled& stop) {
+        base::Diag unheard(base::Diag::Deferred::Yes);
+        const auto ending = [&] { return cancelled() || (stop && stop()); };
+        const auto bytes = [&] {
+            const Stopwatch watch(counts.special_ns);
+            return order.compile(unheard, ending);
+        }();
+        if (!bytes) {
+            return nullptr;
+        }
+        ++counts.compiled_special;
+        if (cache.is_on()) {
+            (void)cache.store(order.key, *bytes); // kept or not, it is used
+        }
+        std::string why;
+        const ShaderObject* object = open_bytes(*bytes, why);
+        const std::lock_guard lock(mutex);
+        return object ? special.emplace(order.key, object).first->second : nullptr;
+    }
+
     // --- names, with the mutex held
 
     Job* job_for(ShaderPlace place, const Name& name, base::SourcePos pos, bool& is_new) {
@@ -349,6 +389,20 @@ void ShaderLibrary::prefetch(std::string_view name, base::SourcePos pos, Path pa
     }
 }
 
+const ShaderObject* ShaderLibrary::find_special(const SpecialShader& special) {
+    return impl_->known_special(special.key);
+}
+
+const ShaderObject* ShaderLibrary::make_special(const SpecialShader& special,
+                                                const Cancelled& cancelled) {
+    const ShaderObject* known = impl_->known_special(special.key);
+    return known ? known : impl_->make_special(special, cancelled);
+}
+
+const ShaderLibrary::Config& ShaderLibrary::config() const {
+    return impl_->config;
+}
+
 void ShaderLibrary::stop() {
     impl_->stop();
 }
@@ -361,8 +415,10 @@ LibraryStats ShaderLibrary::stats() const {
     s.cache_hits = c.cache_hits;
     s.cache_misses = c.cache_misses;
     s.compiled = c.compiled;
+    s.compiled_special = c.compiled_special;
     s.search_seconds = seconds(c.search_ns);
     s.compile_seconds = seconds(c.compile_ns);
+    s.special_seconds = seconds(c.special_ns);
     s.load_seconds = seconds(c.load_ns);
     return s;
 }

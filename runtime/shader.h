@@ -86,14 +86,24 @@ private:
 // Ends a compilation early when it returns true; may be empty.
 using Cancelled = std::function<bool()>;
 
+struct BoundValue;
+
+// An object for one set of parameter values, which can be made.
+struct SpecialShader {
+    std::string key;            // of the cache
+    double work_left = 1;       // of the general shader's work per point, estimated
+    double compile_seconds = 0; // estimated
+    std::function<std::optional<std::string>(base::Diag&, const Cancelled&)> compile;
+};
+
 // What a library did so far. Seconds are summed over threads.
 struct LibraryStats {
     std::uint64_t objects = 0;      // opened
     std::uint64_t cache_hits = 0;   // sources whose object was in the cache
     std::uint64_t cache_misses = 0; // ... was not, or there is no cache
-    std::uint64_t compiled = 0;
+    std::uint64_t compiled = 0, compiled_special = 0;
     double search_seconds = 0; // looking for files, keys of the cache
-    double compile_seconds = 0, load_seconds = 0;
+    double compile_seconds = 0, special_seconds = 0, load_seconds = 0;
 };
 
 class ShaderLibrary {
@@ -119,6 +129,11 @@ public:
         std::function<std::optional<std::string>(const std::string& sl_path, base::Diag&,
                                                  const Cancelled&)>
             cache_key;
+        // What it takes to have these values as constants; nullopt: it cannot be done. May be
+        // empty.
+        std::function<std::optional<SpecialShader>(const sl_object&,
+                                                   std::span<const BoundValue> constants)>
+            specialise;
     };
     using Path = std::span<const std::string>;
 
@@ -139,6 +154,12 @@ public:
     // order of find(), whatever is finished first. Messages give the first place that named it.
     void prefetch(std::string_view name, base::SourcePos pos, Path path = {});
 
+    // The object of a special shader, if it has been loaded or lies in the cache; else nullptr.
+    const ShaderObject* find_special(const SpecialShader& special);
+    // Compiles it now, on this thread. nullptr without a message if that fails or is cancelled: the
+    // general shader does the same.
+    const ShaderObject* make_special(const SpecialShader& special, const Cancelled& cancelled);
+
     // Ends compilations nobody waits for and removes what they left. Nothing is found afterwards.
     void stop();
 
@@ -151,6 +172,7 @@ public:
     const ShaderObject* adopt(const sl_object& object);
 
     StringTable& strings() { return strings_; }
+    [[nodiscard]] const Config& config() const;
 
     [[nodiscard]] LibraryStats stats() const;
 
@@ -178,6 +200,9 @@ public:
     ShaderInstance(const ShaderObject& object, std::span<const BoundValue> values,
                    const sl_services& services, void* engine, StringTable& strings,
                    base::Diag& diag);
+    // The same parameters for an object made from that of `general`: their blocks must be alike.
+    ShaderInstance(const ShaderObject& special, const ShaderInstance& general)
+        : object_(special), params_(general.params_), bound_(general.bound_) {}
 
     [[nodiscard]] const ShaderObject& shader() const { return object_; }
     [[nodiscard]] const sl_object& object() const { return object_.object(); }
@@ -198,6 +223,10 @@ private:
     std::vector<std::byte> params_;
     std::vector<std::uint8_t> bound_;
 };
+
+// Parameters have the same names, types and places, and packets the same length: instances of one
+// can stand for those of the other.
+[[nodiscard]] bool have_same_block(const ShaderObject& a, const ShaderObject& b);
 
 // "float[3]", "color" ...: how messages and slctell name a type.
 [[nodiscard]] std::string type_text(int type, int array_length);

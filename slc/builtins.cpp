@@ -18,7 +18,8 @@ constexpr std::uint32_t SL_PURE = PropPure, SL_CONTEXT = PropContext, SL_VARIES 
                         SL_MESSAGE = PropMessage, SL_SPACES = PropSpaces, SL_STATE = PropState,
                         SL_RANDOM = PropRandom, SL_CHANNEL = PropChannel, SL_INOUT = PropInout,
                         SL_DIFF [[maybe_unused]] = PropDiff,
-                        SL_LINEAR [[maybe_unused]] = PropLinear, SL_HIDDEN = PropHidden;
+                        SL_LINEAR [[maybe_unused]] = PropLinear, SL_HIDDEN = PropHidden,
+                        SL_EXACT = PropExact;
 
 struct RawRow {
     std::string_view name, signature, body;

@@ -29,7 +29,8 @@ enum Property : std::uint32_t {
     PropInout = 1u << 13,
     PropDiff = 1u << 14,
     PropLinear = 1u << 15,
-    PropHidden = 1u << 16
+    PropHidden = 1u << 16,
+    PropExact = 1u << 17
 };
 
 // One place of a signature.

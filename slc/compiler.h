@@ -24,6 +24,7 @@ struct CompileOptions {
     std::string preprocessor;        // C compiler to run as preprocessor; "" = cc, gcc or clang
     bool is_preprocessed = false;    // the text has been through a preprocessor; none is run
     bool optimise = true;            // false: only the passes the emitter cannot do without
+    bool exact = false;              // folds only what has the bits it would have at run time
     std::function<bool()> cancelled; // true: ends the programs that run, without a message
 };
 

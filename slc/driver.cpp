@@ -40,6 +40,7 @@ EmitOptions emit_options(const Program& plain, int lanes, const ObjectOptions& o
     emit.variants = widths(options);
     emit.source = plain.files.empty() ? plain.name : plain.files.front();
     emit.ir_text = print_ir(plain);
+    emit.profile = options.profile;
     return emit;
 }
 
@@ -52,6 +53,7 @@ std::string settings_text(const Toolchain& tools, const ObjectOptions& options) 
     for (const std::string& define : options.front.defines) {
         text += "\n-D" + define;
     }
+    text += options.profile ? "\nprofile" : "";
     return text + (options.front.optimise ? "\noptimised" : "\nplain");
 }
 
@@ -72,20 +74,64 @@ std::string c_text(const Program& program, int lanes, const ObjectOptions& optio
     return emit_c(plain, analyse(plain), emit_options(plain, lanes, options));
 }
 
-BuiltObject build_object(const Program& program, const ObjectOptions& options, base::Diag& diag) {
+namespace {
+
+BuiltObject build(const Program& plain, const Facts& facts, const ObjectOptions& options,
+                  base::Diag& diag) {
     const auto tools = find_toolchain(options.front.preprocessor, diag);
     if (!tools) {
         return {};
     }
-    const Program plain = with_plain_files(program);
-    const Facts facts = analyse(plain);
     std::vector<VariantText> variants;
     for (const int lanes : widths(options)) {
         variants.push_back({lanes, emit_c(plain, facts, emit_options(plain, lanes, options))});
     }
-    auto bytes = build_shared_object(*tools, variants, options.flags, program.name,
+    auto bytes = build_shared_object(*tools, variants, options.flags, plain.name,
                                      options.front.cancelled, diag);
     return bytes ? BuiltObject{Outcome::Done, std::move(*bytes)} : BuiltObject{};
+}
+
+} // namespace
+
+BuiltObject build_object(const Program& program, const ObjectOptions& options, base::Diag& diag) {
+    const Program plain = with_plain_files(program);
+    return build(plain, analyse(plain), options, diag);
+}
+
+std::optional<SpecialOrder> special_order(const sl_object& general,
+                                          std::span<const ConstantParam> constants,
+                                          const ObjectOptions& options, std::string& error) {
+    auto special = specialise(general.ir != nullptr ? general.ir : "", constants, error);
+    if (!special) {
+        return std::nullopt;
+    }
+    base::Diag unheard(base::Diag::Deferred::Yes); // general shaders go on running
+    const auto tools = find_toolchain(options.front.preprocessor, unheard);
+    if (!tools) {
+        error = "no C compiler";
+        return std::nullopt;
+    }
+    SpecialOrder order;
+    order.special = std::move(*special);
+    order.kept_needed = general.needed & (1ULL << SL_VAR_P | 1ULL << SL_VAR_N);
+    base::Sha256 hash;
+    order.key = hash.add_field("specialised")
+                    .add_field(print_ir(order.special.program))
+                    .add_field(std::to_string(order.kept_needed))
+                    .add_field(settings_text(*tools, options))
+                    .hex();
+    return order;
+}
+
+// Lights get N from the batch they light, and find their shadow rays' origin by its P: where they
+// run, these stay what they are in the general shader.
+BuiltObject build_special(const SpecialOrder& order, const ObjectOptions& options,
+                          base::Diag& diag) {
+    Facts facts = analyse(order.special.program);
+    if ((facts.facts & (SL_FACT_lights | SL_FACT_ambient)) != 0) {
+        facts.needed |= order.kept_needed;
+    }
+    return build(order.special.program, facts, options, diag);
 }
 
 std::optional<std::string> compile_to_bytes(const std::string& sl_path,

@@ -5,9 +5,11 @@
 
 #include "runtime/base/diag.h"
 #include "slc/compiler.h"
+#include "slc/specialise.h"
 #include "slc/toolchain.h"
 
 #include <optional>
+#include <span>
 #include <string>
 
 namespace slc {
@@ -15,6 +17,7 @@ namespace slc {
 struct ObjectOptions {
     CompileOptions front;
     CompileFlags flags;
+    bool profile = false;     // the object counts time by source line (sl_profile.h)
     bool native_only = false; // only the variant this processor runs best
     std::string index_dir;    // where object_key remembers (key_index.h); "" = nowhere
 };
@@ -31,6 +34,20 @@ struct BuiltObject {
 };
 [[nodiscard]] BuiltObject build_object(const Program& program, const ObjectOptions& options,
                                        base::Diag& diag);
+
+// An object for parameters that keep their values (specialise.h), not made yet.
+struct SpecialOrder {
+    Specialised special;
+    std::uint64_t kept_needed = 0; // variables lights look for in the batch of who asks them
+    std::string key;               // identifies what build_special would make
+};
+// nullopt with the reason in `error`: broken IR, or no compiler.
+[[nodiscard]] std::optional<SpecialOrder> special_order(const sl_object& general,
+                                                        std::span<const ConstantParam> constants,
+                                                        const ObjectOptions& options,
+                                                        std::string& error);
+[[nodiscard]] BuiltObject build_special(const SpecialOrder& order, const ObjectOptions& options,
+                                        base::Diag& diag);
 
 // The shader of a source file: the one named like the file, or the only one. nullopt after
 // messages, or without any if it was cancelled.

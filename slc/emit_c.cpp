@@ -57,6 +57,7 @@ private:
     void variant();
     void descriptor();
     void ir_text();
+    void profile_places();
     [[nodiscard]] std::string mask_text(std::uint64_t mask) const;
 
     const Program& program_;
@@ -65,6 +66,7 @@ private:
     std::vector<std::string> names_;
     StringPool strings_;
     Lines out_;
+    std::vector<Loc> places_ = {Loc{}}; // of a profile
 };
 
 void CFile::head() {
@@ -72,6 +74,9 @@ void CFile::head() {
               ", by slc from " + options_.source + " */");
     out_.line("#define SL_LANES " + std::to_string(options_.lanes));
     out_.line("#include <sl_shader.h>");
+    if (options_.profile) {
+        out_.line("#include <sl_profile.h>");
+    }
     out_.line("");
 }
 
@@ -136,9 +141,17 @@ void CFile::shade() {
         out_.line("struct params *const params = batch->params;");
         out_.line("(void)params;");
     }
-    Emitter(program_, program_.body, facts_.written, Emitter::Mode::Shade, c_dialect, names_,
-            strings_, out_)
-        .emit_body();
+    Emitter emitter(program_, program_.body, facts_.written, Emitter::Mode::Shade, c_dialect,
+                    names_, strings_, out_);
+    if (options_.profile) {
+        out_.line("sl_profile_cursor profile[1];");
+        out_.line("sl_profile_begin(profile, call);");
+        emitter.stamp_places(places_);
+    }
+    emitter.emit_body();
+    if (options_.profile) {
+        out_.line("sl_profile_at(profile, 0, live);");
+    }
     out_.line("return SL_DONE;");
     out_.close();
     out_.line("");
@@ -218,6 +231,7 @@ void CFile::descriptor() {
     }
     out_.line("static const sl_variant *const sl_variants[] = {" + variants + "};");
     ir_text();
+    profile_places();
     out_.open("__attribute__((visibility(\"default\"))) const sl_object sl_shader_object = {");
     out_.line(".fingerprint = " + c_string(SL_ABI_FINGERPRINT) + ",");
     out_.line(".name = " + c_string(program_.name) + ",");
@@ -240,6 +254,10 @@ void CFile::descriptor() {
     out_.line(".variants = sl_variants,");
     out_.line(".ir = " + std::string(options_.ir_text.empty() ? "\"\"" : "sl_ir") + ",");
     out_.line(".source = " + c_string(options_.source) + ",");
+    if (options_.profile) {
+        out_.line(".num_places = " + std::to_string(places_.size()) + ",");
+        out_.line(".places = sl_places,");
+    }
     out_.close("};");
 }
 
@@ -256,6 +274,19 @@ void CFile::ir_text() {
     }
     out_.line(";");
     out_.close("");
+}
+
+void CFile::profile_places() {
+    if (!options_.profile) {
+        return;
+    }
+    out_.open("static const sl_place sl_places[] = {");
+    for (const Loc& place : places_) {
+        const std::string file =
+            place.file < program_.files.size() ? program_.files[place.file] : options_.source;
+        out_.line("{" + c_string(file) + ", " + std::to_string(place.line) + "},");
+    }
+    out_.close("};");
 }
 
 } // namespace

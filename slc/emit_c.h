@@ -16,8 +16,9 @@ struct EmitOptions {
     int lanes = 8; // 8: AVX2; 4: any x86-64
     // Widths of the object's variants, best first: the unit of the first one holds the descriptor.
     std::vector<int> variants = {8, 4};
-    std::string source;  // name of the source file, as the descriptor gives it
-    std::string ir_text; // "" = leave it out
+    std::string source;   // name of the source file, as the descriptor gives it
+    std::string ir_text;  // "" = leave it out
+    bool profile = false; // count time and lanes by source line (sl_profile.h)
 };
 
 [[nodiscard]] std::string emit_c(const Program& program, const Facts& facts,

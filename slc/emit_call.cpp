@@ -211,10 +211,10 @@ void Emitter::spline_arguments(Call& c) {
     } else {
         const std::string copy = fresh("out");
         Expr element = name_of(knots);
-        element.text += "[k]";
+        element.text += "[sl_k]";
         out_.line(std::string(type_word(form(knots), c.lanes)) + " " + copy + "[" + length + "];");
-        out_.line("for (int k = 0; k < " + length + "; k++)");
-        out_.line("    " + copy + "[k] = " + fit(element, form(knots), c.lanes).text + ";");
+        out_.line("for (int sl_k = 0; sl_k < " + length + "; sl_k++)");
+        out_.line("    " + copy + "[sl_k] = " + fit(element, form(knots), c.lanes).text + ";");
         c.arguments.push_back(copy);
     }
     c.arguments.push_back(length);

@@ -167,8 +167,8 @@ void Emitter::load_param(VarId v) {
         return;
     }
     out_.line(declarator(v, false) + ";");
-    out_.line("for (int k = 0; k < " + std::to_string(p.array_length) + "; k++)");
-    out_.line("    " + name + "[k] = sl_load_" + suffix + "(call, params->" + name + " + k * " +
+    out_.line("for (int sl_k = 0; sl_k < " + std::to_string(p.array_length) + "; sl_k++)");
+    out_.line("    " + name + "[sl_k] = sl_load_" + suffix + "(call, params->" + name + " + sl_k * " +
               std::to_string(num_components(p.type)) + " * batch->stride);");
 }
 
@@ -205,9 +205,9 @@ void Emitter::store_param(VarId v) {
         out_.line("sl_store_" + suffix + "(call, live, params->" + name + ", " + name + ");");
         return;
     }
-    out_.line("for (int k = 0; k < " + std::to_string(p.array_length) + "; k++)");
-    out_.line("    sl_store_" + suffix + "(call, live, params->" + name + " + k * " +
-              std::to_string(num_components(p.type)) + " * batch->stride, " + name + "[k]);");
+    out_.line("for (int sl_k = 0; sl_k < " + std::to_string(p.array_length) + "; sl_k++)");
+    out_.line("    sl_store_" + suffix + "(call, live, params->" + name + " + sl_k * " +
+              std::to_string(num_components(p.type)) + " * batch->stride, " + name + "[sl_k]);");
 }
 
 void Emitter::assign(VarId dst, const Expr& value, const Block& b) {

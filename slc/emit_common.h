@@ -99,6 +99,9 @@ public:
     // Declares what is needed, then the statements, then the stores.
     void emit_body();
 
+    // From now on emitted code stamps the places it comes to, by their rows in `places`.
+    void stamp_places(std::vector<Loc>& places) { places_ = &places; }
+
 private:
     // --- values (emit_expr.cpp)
     [[nodiscard]] const Var& var(VarId v) const {
@@ -167,6 +170,8 @@ private:
     void store_element(const Stmt& s, const Block& b);
     void copy_array(const Stmt& s, const Block& b);
     void note_place(const Loc& loc);
+    void stamp(const Loc& loc);
+    void forget_place();
     [[nodiscard]] const std::string& mask(const Block& b) const { return masks_.at(&b); }
     [[nodiscard]] std::string fresh(std::string_view stem);
 
@@ -212,6 +217,8 @@ private:
     std::vector<VarId> reading_;        // operands of the expression being built
     std::vector<const Stmt*> jumpable_; // innermost C loop last
     std::map<std::string, int> counters_;
+    std::vector<Loc>* places_ = nullptr;   // of a profile
+    const Block* stamped_block_ = nullptr; // that holds the statement being written
     std::uint32_t place_line_ = 0;
     std::uint32_t place_file_ = 0;
 };

@@ -24,6 +24,26 @@ void Emitter::note_place(const Loc& loc) {
     place_file_ = loc.file;
     const std::string file = loc.file < program_.files.size() ? program_.files[loc.file] : "?";
     out_.raw("#line " + std::to_string(loc.line) + " " + c_string(file));
+    if (places_ != nullptr && stamped_block_ != nullptr) {
+        stamp(loc);
+    }
+}
+
+// Control comes here from several places: a profile wants a stamp.
+void Emitter::forget_place() {
+    place_line_ = places_ != nullptr ? 0 : place_line_;
+}
+
+void Emitter::stamp(const Loc& loc) {
+    const auto it = std::find_if(places_->begin(), places_->end(), [&](const Loc& place) {
+        return place.line == loc.line && place.file == loc.file;
+    });
+    const auto row = it - places_->begin();
+    if (it == places_->end()) {
+        places_->push_back(loc);
+    }
+    out_.line("sl_profile_at(profile, " + std::to_string(row) + ", " + mask(*stamped_block_) +
+              ");");
 }
 
 void Emitter::place_label(const std::string& label) {
@@ -35,6 +55,7 @@ void Emitter::place_label(const std::string& label) {
 
 void Emitter::block(const Block& b) {
     std::string end;
+    forget_place();
     for (std::size_t i = 0; i < b.size(); ++i) {
         statement(b[i], b);
         const bool more = i + 1 < b.size();
@@ -51,10 +72,12 @@ void Emitter::block(const Block& b) {
     if (!end.empty()) {
         place_label(end);
     }
+    forget_place();
 }
 
 void Emitter::statement(const Stmt& s, const Block& b) {
     reading_.clear();
+    stamped_block_ = &b;
     switch (s.op) {
     case Op::Call:
     case Op::Difference:
@@ -133,7 +156,7 @@ void Emitter::copy_array(const Stmt& s, const Block& b) {
     note_place(s.loc);
     Expr value = use(source);
     if (var(source).array_length > 0) {
-        value.text += "[k]";
+        value.text += "[sl_k]";
     }
     value = fit(std::move(value), form(array), varying(array));
     const std::string name = name_of(array).text;
@@ -144,10 +167,10 @@ void Emitter::copy_array(const Stmt& s, const Block& b) {
     }
     if (varying(array) && flow_.must_blend(array, b)) {
         value.text = "slv_select_" + std::string(form_suffix(form(array))) + "(" + mask(b) + ", " +
-                     value.text + ", " + name + "[k])";
+                     value.text + ", " + name + "[sl_k])";
     }
-    out_.line("for (int k = 0; k < " + std::to_string(var(array).array_length) + "; k++)");
-    out_.line("    " + name + "[k] = " + value.text + ";");
+    out_.line("for (int sl_k = 0; sl_k < " + std::to_string(var(array).array_length) + "; sl_k++)");
+    out_.line("    " + name + "[sl_k] = " + value.text + ";");
 }
 
 void Emitter::branch(const Stmt& s, const Block& b) {
@@ -209,6 +232,7 @@ void Emitter::uniform_loop(const Stmt& s, const Block& b) {
         masks_[&inner] = mask(b);
     }
     out_.open("for (;;) {");
+    forget_place();
     // The condition's last temporary is still deferred: it becomes the test.
     for (const Stmt& c : s.bodies[0]) {
         statement(c, s.bodies[0]);
@@ -230,6 +254,7 @@ void Emitter::masked_loop(const Stmt& s, const Block& b) {
     masks_[&s.bodies[2]] = lanes;
     out_.line(type + " " + lanes + " = " + mask(b) + "; /* lanes still in the loop */");
     out_.open("for (;;) {");
+    forget_place();
     for (const Stmt& c : s.bodies[0]) {
         statement(c, s.bodies[0]);
     }

@@ -3,6 +3,7 @@
 // jump, scopes nothing leaves.
 //   t1 = call "radians" "f(f)" k30       t1 = copy k31
 //   if k0 { A } { B }               ->   B
+//   t1 = call "pow" "f(f,f)" x k2        t1 = mul x x
 // Values come from the interpreter, so there is one definition of each operation here.
 // Needs: nothing. Provides: nothing. Spoils: nothing.
 #include "slc/interp.h"
@@ -20,7 +21,7 @@ namespace {
 
 class Folder {
 public:
-    explicit Folder(Program& program);
+    Folder(Program& program, Folding folding);
     bool run();
 
 private:
@@ -28,8 +29,10 @@ private:
     bool replaced(Stmt& s, Block& out);
     void fold_value(Stmt& s);
     void simplify(Stmt& s);
+    void simplify_power(Stmt& s);
     bool evaluate(const Stmt& s, Value& result) const;
     VarId constant(const Var& like, const Value& value);
+    [[nodiscard]] bool has_exact_result(const Stmt& s, const Value& result) const;
     [[nodiscard]] bool is_const(VarId id) const { return var(id).kind == VarKind::Const; }
     [[nodiscard]] bool is_number(VarId id, float x) const {
         return is_const(id) && var(id).type == Type::Float && var(id).array_length == 0 &&
@@ -41,6 +44,7 @@ private:
     static std::string key(const Var& v);
 
     Program& program_;
+    Folding folding_;
     std::unordered_map<std::string, VarId> constants_;
     int next_name_ = 0;
     bool changed_ = false;
@@ -54,7 +58,7 @@ std::string Folder::key(const Var& v) {
     return k;
 }
 
-Folder::Folder(Program& program) : program_(program) {
+Folder::Folder(Program& program, Folding folding) : program_(program), folding_(folding) {
     for (std::size_t i = 0; i < program.vars.size(); ++i) {
         const Var& v = program.vars[i];
         if (v.kind == VarKind::Const && v.array_length == 0) {
@@ -83,6 +87,7 @@ void Folder::block(Block& b) {
         }
         fold_value(s);
         simplify(s);
+        simplify_power(s);
         if (replaced(s, out)) {
             changed_ = true;
         } else {
@@ -158,6 +163,44 @@ bool Folder::evaluate(const Stmt& s, Value& result) const {
                        [](double x) { return std::isfinite(static_cast<float>(x)); });
 }
 
+// Operations whose float result is the double one rounded once: sums, products and quotients
+// (53 bits are enough that the second rounding changes nothing), choices, comparisons; not those
+// that round between their steps, as Dot does.
+bool is_exact(const Stmt& s, Type result) {
+    switch (s.op) {
+    case Op::Add:
+    case Op::Sub:
+    case Op::Mul:
+    case Op::Div:
+        return result != Type::Matrix;
+    case Op::Dot:
+    case Op::Cross:
+        return false;
+    case Op::Call:
+        return builtin_of(s).has(PropExact);
+    default:
+        return s.op < Op::Call;
+    }
+}
+
+// Numbers no instruction set treats in its own way: zeros have a sign that depends on the order of
+// operands, subnormals may be flushed.
+bool is_plain_number(float x) {
+    return std::isnormal(x) || std::bit_cast<std::uint32_t>(x) == 0;
+}
+
+bool Folder::has_exact_result(const Stmt& s, const Value& result) const {
+    const auto plain = [](double x) { return is_plain_number(static_cast<float>(x)); };
+    const bool moves_only = s.op == Op::Copy || s.op == Op::Select || s.op == Op::Triple ||
+                            s.op == Op::Matrix16 || s.op == Op::Component || s.op == Op::Load;
+    return is_exact(s, var(s.dst).type) &&
+           (moves_only || (std::all_of(result.x.begin(), result.x.end(), plain) &&
+                           std::all_of(s.args.begin(), s.args.end(), [&](VarId id) {
+                               return std::all_of(var(id).values.begin(), var(id).values.end(),
+                                                  plain);
+                           })));
+}
+
 VarId Folder::constant(const Var& like, const Value& value) {
     Var v;
     v.type = like.type;
@@ -189,7 +232,8 @@ void Folder::fold_value(Stmt& s) {
         std::all_of(s.args.begin(), s.args.end(), [&](VarId id) { return is_const(id); });
     const bool is_plain = s.op == Op::Copy && all_known && var(s.args[0]).type == var(s.dst).type;
     Value value;
-    if (!all_known || is_plain || !evaluate(s, value)) {
+    if (!all_known || is_plain || !evaluate(s, value) ||
+        (folding_ == Folding::Exact && !has_exact_result(s, value))) {
         return;
     }
     s.args = {constant(var(s.dst), value)};
@@ -227,10 +271,35 @@ void Folder::simplify(Stmt& s) {
     }
 }
 
+// pow(x, 2), pow(x, 1) and pow(x, 0.5) as written in the source. Their other forms differ from
+// pow() in the last bit, so parameters that become constants later do not take them.
+void Folder::simplify_power(Stmt& s) {
+    if (folding_ == Folding::Exact || s.op != Op::Call || builtin_of(s).body != "pow") {
+        return;
+    }
+    const VarId x = s.args[0];
+    if (is_number(s.args[1], 2)) {
+        s.op = Op::Mul;
+        s.args = {x, x};
+    } else if (is_number(s.args[1], 1)) {
+        s.op = Op::Copy;
+        s.args = {x};
+    } else if (is_number(s.args[1], 0.5F)) {
+        s.args = {x};
+        s.builtin = find_builtins("sqrt").front();
+        changed_ = true;
+        return;
+    } else {
+        return;
+    }
+    s.builtin = -1;
+    changed_ = true;
+}
+
 } // namespace
 
-bool pass_fold(Program& program) {
-    return Folder(program).run();
+bool pass_fold(Program& program, Folding folding) {
+    return Folder(program, folding).run();
 }
 
 } // namespace slc

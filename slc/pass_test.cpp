@@ -93,6 +93,60 @@ TEST(Passes, DeadCode) {
     }
 }
 
+TEST(Passes, CommonSubexpressions) {
+    const Case cases[] = {
+        // what a variable still holds is not computed again
+        {"t1 = mul s k @0:1:1\nx = add t1 one @0:1:1\nt2 = mul s k @0:1:1\ny = add t2 one @0:1:1\n",
+         "t1 = mul s k @0:1:1\nx = add t1 one @0:1:1\nt2 = copy t1 @0:1:1\ny = copy x @0:1:1\n"},
+        // not when an operand changed, or the holder was overwritten
+        {"x = mul s k @0:1:1\ns = copy one @0:1:1\ny = mul s k @0:1:1\n",
+         "x = mul s k @0:1:1\ns = copy one @0:1:1\ny = mul s k @0:1:1\n"},
+        {"x = mul s k @0:1:1\nx = copy one @0:1:1\ny = mul s k @0:1:1\nx = mul s k @0:1:1\n",
+         "x = mul s k @0:1:1\nx = copy one @0:1:1\ny = mul s k @0:1:1\nx = copy y @0:1:1\n"},
+        // into a body, not out of it
+        {"x = mul s k @0:1:1\nif s @0:1:1 {\ny = mul s k @0:1:1\nt1 = add s k @0:1:1\n} {\n}\n"
+         "t2 = add s k @0:1:1\n",
+         "x = mul s k @0:1:1\nif s @0:1:1 {\ny = copy x @0:1:1\nt1 = add s k @0:1:1\n} {\n}\n"
+         "t2 = add s k @0:1:1\n"},
+        // what a loop changes is new in every round
+        {"x = add y one @0:1:1\nloop s @0:1:1 {\n} {\nt1 = add y one @0:1:1\ny = copy t1 @0:1:1\n} "
+         "{\n}\n",
+         "x = add y one @0:1:1\nloop s @0:1:1 {\n} {\nt1 = add y one @0:1:1\ny = copy t1 @0:1:1\n} "
+         "{\n}\n"},
+        // random() is another number each time
+        {"x = call \"random\" \"f()\" @0:1:1\ny = call \"random\" \"f()\" @0:1:1\n",
+         "x = call \"random\" \"f()\" @0:1:1\ny = call \"random\" \"f()\" @0:1:1\n"},
+        {"x = call \"noise\" \"f(f)\" s @0:1:1\ny = call \"noise\" \"f(f)\" s @0:1:1\n",
+         "x = call \"noise\" \"f(f)\" s @0:1:1\ny = copy x @0:1:1\n"},
+    };
+    for (const Case& c : cases) {
+        Program p = parse(with_body(block(c.before)));
+        pass_cse(p);
+        EXPECT_EQ(body_of(p), plain(c.after)) << c.before;
+        EXPECT_TRUE(verify_ir(p).empty());
+    }
+}
+
+TEST(Passes, LoopInvariants) {
+    const Case cases[] = {
+        {"loop s @0:1:1 {\n} {\nt1 = mul s two @0:1:1\nt2 = add t1 x @0:1:1\nx = copy t2 @0:1:1\n} "
+         "{\n}\n",
+         "t1 = mul s two @0:1:1\nloop s @0:1:1 {\n} {\nt2 = add t1 x @0:1:1\nx = copy t2 @0:1:1\n} "
+         "{\n}\n"},
+        // behind a branch nobody knows whether it is reached
+        {"loop s @0:1:1 {\n} {\nif x @0:1:1 {\nbreak @0:1:1\n} {\n}\nt1 = mul s two @0:1:1\n"
+         "x = copy t1 @0:1:1\n} {\n}\n",
+         "loop s @0:1:1 {\n} {\nif x @0:1:1 {\nbreak @0:1:1\n} {\n}\nt1 = mul s two @0:1:1\n"
+         "x = copy t1 @0:1:1\n} {\n}\n"},
+    };
+    for (const Case& c : cases) {
+        Program p = parse(with_body(block(c.before)));
+        pass_hoist(p);
+        EXPECT_EQ(body_of(p), plain(c.after)) << c.before;
+        EXPECT_TRUE(verify_ir(p).empty());
+    }
+}
+
 TEST(Passes, Copies) {
     const Case cases[] = {
         {"x = copy k @0:1:1\nCi = mul Cs x @0:1:1\n", "x = copy k @0:1:1\nCi = mul Cs k @0:1:1\n"},

@@ -8,20 +8,30 @@ namespace slc {
 namespace {
 // Of the simplifying passes, each of which feeds the next; most shaders settle in four.
 constexpr int max_rounds = 16;
+// Until nothing changes.
+void simplify(Program& program, Folding folding) {
+    for (int round = 0; round < max_rounds; ++round) {
+        bool changed = pass_fold(program, folding);
+        changed = pass_copies(program) || changed;
+        changed = pass_dead_code(program) || changed;
+        if (!changed) {
+            break;
+        }
+    }
+}
 } // namespace
 
 void run_passes(Program& program, const CompileOptions& options, Messages* messages) {
     pass_detail(program, messages); // first on the program as written, for its warnings
+    const Folding folding = options.exact ? Folding::Exact : Folding::Rounded;
     if (options.optimise) {
-        for (int round = 0; round < max_rounds; ++round) {
-            bool changed = pass_fold(program);
-            changed = pass_copies(program) || changed;
-            changed = pass_dead_code(program) || changed;
-            if (!changed) {
-                break;
-            }
-        }
+        simplify(program, folding);
         pass_detail(program, nullptr); // what was removed may have been what made something varying
+        const bool merged = pass_cse(program);
+        if (pass_hoist(program) || merged) {
+            simplify(program, folding);
+        }
+        pass_detail(program, nullptr);
     }
     pass_compact(program);
 }

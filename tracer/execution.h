@@ -28,6 +28,7 @@ class LightSet;
 class LightRun;
 struct LightList;
 class PixelTrace;
+class ShaderProfile;
 
 // Immutable for the frame, shared by all threads. world, shaders and lights are null while shaders
 // are bound.
@@ -66,6 +67,7 @@ struct ThreadState {
     std::uint64_t batch_serial = 0; // grows with every batch: stale light results are told by it
     std::string printed;            // printf of the bucket in work
     PixelTrace* trace = nullptr;    // --trace-pixel: told what happens
+    ShaderProfile* profile = nullptr; // --profile-shaders: this thread's rows
 };
 
 // Points of one batch that came from rays. All belong to attribute states that shade alike; where a

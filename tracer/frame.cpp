@@ -20,10 +20,13 @@
 #include "tracer/preview.h"
 #include "tracer/quantize.h"
 #include "tracer/sampler.h"
+#include "tracer/shader_profile.h"
 #include "tracer/shader_set.h"
 #include "tracer/shading_classes.h"
+#include "tracer/specialise.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -111,6 +114,7 @@ private:
     bool show(Film& film, const DisplayPlan* shown) const;
     FrameResult render_buckets(Film& film, const Sampler& sampler,
                                const std::vector<std::size_t>& order, PixelTrace* trace) const;
+    [[nodiscard]] Specialiser::Settings special_settings(bool is_traced) const;
     void add_world_stats() const;
     void add_film_stats(const Film& film) const;
 
@@ -198,8 +202,12 @@ FrameResult Frame::render_buckets(Film& film, const Sampler& sampler,
                                   const std::vector<std::size_t>& order, PixelTrace* trace) const {
     const FrameContext frame = context();
     const VisibilityOptions visibility = visibility_options(scene_.options);
-    std::vector<std::unique_ptr<BucketRenderer>> renderers(
-        static_cast<std::size_t>(base::thread_count(settings_.num_threads)));
+    const auto num_slots = static_cast<std::size_t>(base::thread_count(settings_.num_threads));
+    std::vector<ShaderProfile> profiles(num_slots);
+    std::vector<std::unique_ptr<BucketRenderer>> renderers(num_slots);
+    Specialiser specialiser(special_settings(trace != nullptr), *classes_, *lights_, tools_.library,
+                            tools_.diag);
+    std::atomic<std::size_t> num_done{0};
     OrderedPrinter printer(film.num_buckets());
     Progress progress(trace == nullptr ? settings_.progress : ProgressMode::None, stderr);
     progress.start("render", film.num_buckets());
@@ -209,6 +217,7 @@ FrameResult Frame::render_buckets(Film& film, const Sampler& sampler,
         }
         const std::size_t bucket = order[item];
         if (!film.needs_samples(bucket)) { // an earlier run has finished all around it
+            ++num_done;
             printer.finish(bucket, {});
             progress.advance();
             return true;
@@ -218,11 +227,14 @@ FrameResult Frame::render_buckets(Film& film, const Sampler& sampler,
             renderer = std::make_unique<BucketRenderer>(frame, camera_, sampler, *classes_,
                                                         &bindings_, visibility);
             renderer->thread().trace = trace;
+            renderer->thread().profile =
+                tools_.listing != nullptr ? &profiles[static_cast<std::size_t>(slot)] : nullptr;
         }
         renderer->render(bucket, film);
         printer.finish(bucket, std::move(renderer->thread().printed));
         renderer->thread().printed.clear();
         progress.advance();
+        specialiser.progress(++num_done, order.size());
         return true;
     });
     progress.finish();
@@ -232,8 +244,23 @@ FrameResult Frame::render_buckets(Film& film, const Sampler& sampler,
             counters += renderer->thread().counters;
         }
     }
+    for (std::size_t slot = 0; tools_.listing != nullptr && slot < num_slots; ++slot) {
+        tools_.listing->add(profiles[slot], tick_rate_.seconds_per_tick());
+    }
+    counters.add(Counter::special_used, specialiser.num_special());
     add_stats(counters);
     return film.complete() ? FrameResult::Done : FrameResult::Interrupted;
+}
+
+// A traced pixel tells of all variables the shader names.
+Specialiser::Settings Frame::special_settings(bool is_traced) const {
+    Specialiser::Settings settings;
+    settings.mode = is_traced ? SpecialMode::Off : settings_.specialise;
+    settings.num_threads = base::thread_count(settings_.num_threads);
+    settings.is_verbose = settings_.is_verbose;
+    settings.for_profile = tools_.listing != nullptr && !is_traced;
+    settings.interrupted = settings_.interrupted;
+    return settings;
 }
 
 void Frame::add_world_stats() const {

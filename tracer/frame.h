@@ -11,6 +11,7 @@
 #include "tracer/film.h"
 #include "tracer/progress.h"
 #include "tracer/run_record.h"
+#include "tracer/special_mode.h"
 #include "tracer/stats.h"
 
 #include <string>
@@ -20,6 +21,7 @@
 namespace trace {
 
 class LiveDisplay;
+class ShaderListing;
 
 struct RenderSettings {
     int num_threads = 0; // 0: all
@@ -30,6 +32,8 @@ struct RenderSettings {
     std::string default_output;
     // --trace-pixel: what these pixels did is printed, and no picture is made.
     std::vector<std::pair<int, int>> trace_pixels;
+    SpecialMode specialise = SpecialMode::Auto;
+    bool is_verbose = false;    // say what is being done
     bool keep_existing = false; // frames whose files are all there already are skipped (-safe)
     CheckpointSettings checkpoint;
     LiveDisplay* live = nullptr; // shows frames while they render
@@ -44,6 +48,7 @@ struct FrameTools {
     rt::StringTable& strings;
     base::Diag& diag;
     Stats& stats;
+    ShaderListing* listing = nullptr; // --profile-shaders
     Preview* preview = nullptr; // a small picture of the first display, for reports
 };
 

@@ -233,7 +233,8 @@ sl_points HitShader::run_surface(const ShadingClass& c, std::uint64_t shown, Exe
                                  std::span<const std::uint32_t> members) {
     const auto count = static_cast<std::uint32_t>(members.size());
     rt::ShadeBatch& batch = thread_.surface;
-    batch.begin(*c.surface->instance, count);
+    const rt::ShaderInstance& instance = c.surface->current();
+    batch.begin(instance, count);
     const std::uint32_t stride = batch.stride();
     sl_points planes = batch.points();
     add_shown_planes(shown, planes);
@@ -247,8 +248,7 @@ sl_points HitShader::run_surface(const ShadingClass& c, std::uint64_t shown, Exe
     const bool own_Cs = planes.var[SL_VAR_Cs] != nullptr, own_Os = planes.var[SL_VAR_Os] != nullptr;
     planes.var[SL_VAR_Cs] = own_Cs ? planes.var[SL_VAR_Cs] : Ci;
     planes.var[SL_VAR_Os] = own_Os ? planes.var[SL_VAR_Os] : Oi;
-    const std::uint64_t needed =
-        c.surface->object().needed | shown | bit(SL_VAR_Cs) | bit(SL_VAR_Os);
+    const std::uint64_t needed = instance.object().needed | shown | bit(SL_VAR_Cs) | bit(SL_VAR_Os);
     frame_.world->fill(subject_hits_, incident(count), needed & geometry_variables, stride, planes,
                        batch.aux_points_u(), batch.aux_points_v());
     if (own_Cs) {
@@ -276,14 +276,15 @@ void HitShader::run_atmosphere(const ShaderEntry& shader, const Execution& surfa
                                std::span<const std::uint32_t> members) {
     const auto count = static_cast<std::uint32_t>(members.size());
     rt::ShadeBatch& batch = thread_.volume;
-    batch.begin(*shader.instance, count);
+    batch.begin(shader.current(), count);
     Execution execution(frame_, shader);
     execution.thread = &thread_;
     execution.batch = &batch;
     execution.subject = surface.subject;
     execution.surface = &surface;
-    frame_.world->fill(subject_hits_, incident(count), shader.object().needed & geometry_variables,
-                       batch.stride(), batch.points(), nullptr, nullptr);
+    frame_.world->fill(subject_hits_, incident(count),
+                       batch.instance().object().needed & geometry_variables, batch.stride(),
+                       batch.points(), nullptr, nullptr);
     fill_own_variables(batch, count);
     fill_seeds(batch, members);
     const sl_points& planes = batch.points();
@@ -347,7 +348,12 @@ void HitShader::run(rt::ShadeBatch& batch, Execution& execution) {
     }
     Counters& counters = thread_.counters;
     ShaderCounters& of_shader = counters.shader(execution.running.number);
-    of_shader.add_time(base::ticks() - start);
+    const std::uint64_t spent = base::ticks() - start;
+    of_shader.add_time(spent);
+    execution.running.spent_ticks.fetch_add(spent, std::memory_order_relaxed);
+    if (&batch.instance() != execution.running.instance.get()) {
+        thread_.counters.add(Counter::points_special, batch.count());
+    }
     of_shader.add_batch(batch.count(), batch.num_packets(), execution.lanes());
     counters.add(Counter::batches);
     counters.add(Counter::packets, batch.num_packets());

@@ -59,8 +59,9 @@ LightRun& attached(Execution& execution, rib::LightId id) {
 } // namespace
 
 void LightRun::attach(Execution& asker, const LightInfo& info) {
-    const bool is_new = info_ != &info;
     const bool stale = asker_ != &asker || serial_ != asker.thread->batch_serial;
+    // Between batches of the asker: what a running one learned from the light stays.
+    const bool is_new = info_ != &info || (stale && instance_ != &info.shader->current());
     if (!is_new && !stale) {
         return;
     }
@@ -84,7 +85,8 @@ void LightRun::attach(Execution& asker, const LightInfo& info) {
 }
 
 void LightRun::begin() {
-    batch_.begin(*info_->shader->instance, all_lanes);
+    instance_ = &info_->shader->current();
+    batch_.begin(*instance_, all_lanes);
     fill_frame(Space::from(info_->shader->camera_from_shader).value_or(Space{}));
     for (const sl_variable id : {SL_VAR_u, SL_VAR_v, SL_VAR_s, SL_VAR_t, SL_VAR_du, SL_VAR_dv}) {
         fill_float(batch_, id, 0);
@@ -230,7 +232,9 @@ void LightRun::run(std::uint32_t num_points) {
         report_suspended(*execution_);
     }
     if (is_timed) {
-        of_shader.add_time(base::ticks() - start);
+        const std::uint64_t spent = base::ticks() - start;
+        of_shader.add_time(spent);
+        info_->shader->spent_ticks.fetch_add(timed_every * spent, std::memory_order_relaxed);
     }
     of_shader.add_batch(num_points, batch_.num_packets(), execution_->lanes());
     counters.add(Counter::light_packets, batch_.num_packets());

@@ -87,6 +87,7 @@ private:
 
     Execution* asker_ = nullptr;
     const LightInfo* info_ = nullptr;
+    const rt::ShaderInstance* instance_ = nullptr; // of its shader, as it runs now
     std::optional<Execution> execution_;
     rt::ShadeBatch batch_;
     std::uint64_t serial_ = 0;

@@ -200,6 +200,14 @@ private:
         }
     }
 
+    void apply_specialise(const Row& row) {
+        if (const auto mode = parse_special_mode(values_[0])) {
+            result_.options.specialise = *mode;
+        } else {
+            fail(row, "needs " + std::string(row.metavar));
+        }
+    }
+
     void apply_show(const Row& row) {
         RenderOptions& o = result_.options;
         o.show = true;
@@ -292,11 +300,17 @@ private:
         case Id::stats_json:
             o.stats_json = values_[0];
             break;
+        case Id::profile_shaders:
+            o.profile_shaders = values_[0];
+            break;
         case Id::report:
             o.report = values_[0];
             break;
         case Id::trace_pixel:
             o.trace_pixels.emplace_back(integer(0), integer(1));
+            break;
+        case Id::specialise:
+            apply_specialise(row);
             break;
         case Id::progress:
             apply_progress(row);

@@ -7,6 +7,7 @@
 #include "tracer/checkpoint.h"
 #include "tracer/live_display.h"
 #include "tracer/progress.h"
+#include "tracer/special_mode.h"
 
 #include <array>
 #include <optional>
@@ -26,10 +27,11 @@ struct RenderOptions {
     std::vector<std::string> shader_path;
     std::vector<std::string> rib_texts; // -option
     std::vector<std::string> files;     // "-" is standard input
-    std::string stats_json, report;
+    std::string stats_json, report, profile_shaders;
     std::vector<std::pair<int, int>> trace_pixels;
     CheckpointSettings checkpoint;
     ProgressMode progress = ProgressMode::Auto;
+    SpecialMode specialise = SpecialMode::Auto;
     bool show = false;                  // -d
     int show_every = 1;                 // every Nth line of buckets first
     std::optional<LiveServers> servers; // --display-server

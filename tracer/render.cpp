@@ -9,6 +9,7 @@
 #include "runtime/base/module.h"
 #include "runtime/base/parallel.h"
 #include "runtime/base/search_path.h"
+#include "slc/cost.h"
 #include "slc/driver.h"
 #include "tracer/display.h"
 #include "tracer/live_display.h"
@@ -21,6 +22,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <unistd.h>
 #include <vector>
@@ -139,6 +143,44 @@ slc::ObjectOptions compile_options(const std::string& index_dir, const rt::Cance
     return options;
 }
 
+// Seconds the C compiler takes: what an empty shader costs, and more for each statement (measured
+// by the benchmark "special": docs/benchmarks.md).
+double compile_seconds(std::size_t num_statements) {
+    return 0.06 + 0.0004 * static_cast<double>(num_statements);
+}
+
+// The compiler's order for an object, as the runtime knows it.
+std::optional<rt::SpecialShader>
+special_shader(const sl_object& general, std::span<const rt::BoundValue> constants, bool profile) {
+    slc::ObjectOptions options = compile_options({}, {});
+    options.profile = profile;
+    std::vector<slc::ConstantParam> params;
+    params.reserve(constants.size());
+    for (const rt::BoundValue& value : constants) {
+        params.push_back(
+            {value.name, value.floats, value.strings.empty() ? "" : value.strings.front()});
+    }
+    std::string error; // the general shader runs on
+    auto made = slc::special_order(general, params, options, error);
+    if (!made) {
+        return std::nullopt;
+    }
+    const auto order = std::make_shared<const slc::SpecialOrder>(std::move(*made));
+    const slc::Specialised& special = order->special;
+    rt::SpecialShader shader;
+    shader.key = order->key;
+    shader.work_left = special.work_before > 0 ? special.work_after / special.work_before : 1;
+    shader.compile_seconds = compile_seconds(slc::num_statements(special.program));
+    shader.compile = [order, options](base::Diag& diag, const rt::Cancelled& cancelled) {
+        slc::ObjectOptions stoppable = options;
+        stoppable.front.cancelled = cancelled;
+        slc::BuiltObject built = slc::build_special(*order, stoppable, diag);
+        return built.outcome == slc::Outcome::Done ? std::optional(std::move(built.bytes))
+                                                   : std::nullopt;
+    };
+    return shader;
+}
+
 std::uint64_t cache_bytes(base::Diag& diag) {
     const char* text = std::getenv("PERIGEE_CACHE_SIZE");
     const auto size = text != nullptr ? rt::parse_cache_size(text) : rt::default_cache_bytes;
@@ -191,11 +233,14 @@ trace::RendererConfig renderer_config(const trace::RenderOptions& options, base:
     config.settings.num_threads = options.num_threads;
     config.settings.progress = options.progress;
     config.settings.interrupted = base::is_interrupted;
+    config.settings.specialise = options.specialise;
+    config.settings.is_verbose = options.verbose;
     config.settings.keep_existing = options.safe;
     config.settings.trace_pixels = options.trace_pixels;
     config.settings.checkpoint = options.checkpoint;
     config.keep_previews = !options.report.empty();
     config.is_verbose = options.verbose;
+    config.profile_shaders = !options.profile_shaders.empty();
     config.shaders.search_path = installed_shaders();
     config.shaders.trusted = trusted_directories(options);
     config.shaders.trust_all = options.allow_programs;
@@ -211,6 +256,11 @@ trace::RendererConfig renderer_config(const trace::RenderOptions& options, base:
         [index_dir = config.shaders.cache_dir](const std::string& sl_path, base::Diag& said,
                                                const rt::Cancelled& cancelled) {
             return slc::object_key(sl_path, compile_options(index_dir, cancelled), said);
+        };
+    config.shaders.specialise =
+        [profile = config.profile_shaders](const sl_object& general,
+                                           std::span<const rt::BoundValue> constants) {
+            return special_shader(general, constants, profile);
         };
     config.shaders.path_first = options.shader_path;
     return config;
@@ -294,6 +344,17 @@ bool report_run(const trace::RenderOptions& options, const trace::RunRecord& run
     return ok;
 }
 
+// --profile-shaders. False after a message if the file could not be written.
+bool write_profile(const std::string& path, const trace::ShaderListing& listing, base::Diag& diag) {
+    if (path == "-") {
+        std::fputs(trace::listing_text(listing).c_str(), stdout);
+        return true;
+    }
+    const std::string text =
+        path.ends_with(".json") ? trace::listing_json(listing) : trace::listing_text(listing);
+    return write_report("--profile-shaders", path, text, diag);
+}
+
 // Errors whose code names the machine and not the input: no compiler, no memory, a full disk.
 bool environment_failed(const base::Diag& diag) {
     const std::vector<base::MessageRecord> records = diag.records();
@@ -349,7 +410,10 @@ int run(const trace::RenderOptions& options, const std::vector<const char*>& arg
     renderer.stop();
     trace::RunRecord& record = renderer.finish();
     record.arguments.assign(arguments.begin(), arguments.end());
-    const bool reported = report_run(options, record, diag);
+    bool reported = report_run(options, record, diag);
+    if (!options.profile_shaders.empty()) {
+        reported = write_profile(options.profile_shaders, renderer.listing(), diag) && reported;
+    }
     live.finish(base::is_interrupted); // pages are told; Ctrl-C now ends the showing only
     if (stopped) {
         base::finish_interrupt();

@@ -73,9 +73,11 @@ FrameResult Renderer::render_recorded(const rib::Scene& scene) {
     frame.number = scene.options.frame;
     frame.is_numbered = scene.options.in_frame;
     frame.options = frame_options(scene.options);
-    const FrameResult result = render_frame(
-        scene, config_.settings,
-        {library_, strings_, diag_, frame.stats, config_.keep_previews ? &frame.preview : nullptr});
+    const FrameResult result = render_frame(scene, config_.settings,
+                                            {library_, strings_, diag_, frame.stats,
+                                             config_.profile_shaders ? &listing_ : nullptr,
+                                             config_.keep_previews ? &frame.preview : nullptr});
+    note_directories(scene);
     frame.result = result_text(result);
     add_library_stats(frame.stats);
     frame.stats.amounts[Amount::peak_bytes] = peak_memory_bytes();
@@ -105,6 +107,27 @@ void Renderer::say_what_is_done(const rib::Options& options) {
     }
 }
 
+// Where sources of shaders may lie, for the profile.
+void Renderer::note_directories(const rib::Scene& scene) {
+    for (const rib::ShaderCall& call : scene.shaders) {
+        for (const std::string& directory : *call.search_path) {
+            if (config_.profile_shaders &&
+                std::ranges::find(shader_directories_, directory) == shader_directories_.end()) {
+                shader_directories_.push_back(directory);
+            }
+        }
+    }
+}
+
+const ShaderListing& Renderer::listing() {
+    std::vector<std::string> directories = config_.shaders.path_first;
+    for (const auto* more : {&shader_directories_, &config_.shaders.search_path}) {
+        directories.insert(directories.end(), more->begin(), more->end());
+    }
+    listing_.find_sources(directories);
+    return listing_;
+}
+
 // What the library did since the frame before: shaders are compiled while a scene is read.
 void Renderer::add_library_stats(Stats& stats) {
     const rt::LibraryStats now = library_.stats(), &before = library_before_;
@@ -112,6 +135,8 @@ void Renderer::add_library_stats(Stats& stats) {
     stats.counters[Counter::shader_hits] += now.cache_hits - before.cache_hits;
     stats.counters[Counter::shader_misses] += now.cache_misses - before.cache_misses;
     stats.counters[Counter::shader_compiles] += now.compiled - before.compiled;
+    stats.counters[Counter::special_compiles] += now.compiled_special - before.compiled_special;
+    stats.parts[Part::shader_special] += now.special_seconds - before.special_seconds;
     stats.parts[Part::shader_search] += now.search_seconds - before.search_seconds;
     stats.parts[Part::shader_compile] += now.compile_seconds - before.compile_seconds;
     stats.parts[Part::shader_load] += now.load_seconds - before.load_seconds;

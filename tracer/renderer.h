@@ -8,6 +8,7 @@
 #include "tracer/frame.h"
 #include "tracer/frame_statistics.h"
 #include "tracer/run_record.h"
+#include "tracer/shader_profile.h"
 
 #include <array>
 #include <chrono>
@@ -24,6 +25,7 @@ struct RendererConfig {
     rt::ShaderLibrary::Config shaders;
     bool keep_previews = false; // small pictures of the frames, for --report
     bool is_verbose = false;    // -v
+    bool profile_shaders = false;
 };
 
 class Renderer : public rib::Backend {
@@ -44,6 +46,9 @@ public:
     // No more frames come. What was done, for reports.
     RunRecord& finish();
 
+    // Time by line of the shaders, of all frames so far, with the sources that were found.
+    [[nodiscard]] const ShaderListing& listing();
+
     [[nodiscard]] FrameResult result() const { return result_; } // the worst so far
     [[nodiscard]] int num_frames() const { return num_frames_; }
 
@@ -55,10 +60,13 @@ private:
 
     FrameResult render_recorded(const rib::Scene& scene);
 
+    void note_directories(const rib::Scene& scene);
     void add_library_stats(Stats& stats);
     void say_what_is_done(const rib::Options& options);
 
     RunRecord run_;
+    ShaderListing listing_;
+    std::vector<std::string> shader_directories_; // of the frames' search paths
     FrameStatistics frame_statistics_{diag_};
     rt::LibraryStats library_before_; // when the frame before was done
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();

@@ -7,6 +7,7 @@
 #include "tracer/lights.h"
 #include "tracer/messages.h"
 #include "tracer/pixel_trace.h"
+#include "tracer/shader_profile.h"
 #include "tracer/shader_set.h"
 
 #include <algorithm>
@@ -215,6 +216,14 @@ int32_t raylevel(void* engine) {
 
 int32_t ray_kind(void* engine) {
     return of(engine).ray_kind;
+}
+
+sl_profile_row* profile(void* engine) {
+    const Execution& execution = of(engine);
+    const bool is_counted = execution.thread != nullptr && execution.thread->profile != nullptr &&
+                            execution.batch != nullptr;
+    return is_counted ? execution.thread->profile->rows(execution.batch->instance().object())
+                      : nullptr;
 }
 
 } // namespace

@@ -11,6 +11,7 @@
 #include "tracer/spaces.h"
 #include "tracer/stats.h"
 
+#include <atomic>
 #include <memory>
 #include <string>
 #include <unordered_map>
@@ -24,7 +25,16 @@ struct ShaderEntry {
     std::unique_ptr<rt::ShaderInstance> instance; // never null in a finished set
     base::Mat4 camera_from_shader;
     base::SourcePos pos;
+    // The instance for its parameters alone, once there is one, and the time spent in either
+    // (specialise.h); all else about the entry never changes.
+    mutable std::atomic<const rt::ShaderInstance*> special{nullptr};
+    mutable std::atomic<std::uint64_t> spent_ticks{0};
 
+    // What runs now: asked once per batch.
+    [[nodiscard]] const rt::ShaderInstance& current() const {
+        const rt::ShaderInstance* made = special.load(std::memory_order_acquire);
+        return made != nullptr ? *made : *instance;
+    }
     [[nodiscard]] const sl_object& object() const { return instance->object(); }
 };
 

@@ -2,6 +2,7 @@
 // Statistics for programs: the JSON that docs/statistics.md describes. Keys of counts and times are
 // the ids of stats.def. Names from RIB files that are no UTF-8 get replacement characters.
 #include "tracer/run_record.h"
+#include "tracer/shader_profile.h"
 #include "tracer/version.h"
 
 #include <nlohmann/json.hpp>
@@ -126,6 +127,39 @@ std::string run_json(const RunRecord& run) {
     }
     out["frames"] = std::move(frames);
     out["messages"] = message_list(run);
+    return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string listing_json(const ShaderListing& listing) {
+    Json shaders = Json::array();
+    for (const ShaderListing::Shader& shader : listing.shaders()) {
+        Json lines = Json::array();
+        for (const ShaderListing::File& file : shader.files) {
+            for (const auto& [number, line] : file.lines) {
+                const auto at = static_cast<std::size_t>(number);
+                const auto packets = static_cast<double>(line.packets);
+                lines.push_back(
+                    {{"file", file.name},
+                     {"line", number},
+                     {"seconds", line.seconds},
+                     {"share", shader.seconds > 0 ? line.seconds / shader.seconds : 0},
+                     {"packets", line.packets},
+                     {"lanes", line.lanes},
+                     {"mean_live_lanes",
+                      packets > 0 ? static_cast<double>(line.lanes) / packets : 0},
+                     {"text", at > 0 && at <= file.text.size() ? file.text[at - 1] : ""}});
+            }
+        }
+        shaders.push_back({{"name", shader.name},
+                           {"type", shader.type},
+                           {"seconds", shader.seconds},
+                           {"executions", shader.executions},
+                           {"lines", std::move(lines)}});
+    }
+    const Json out = {{"schema", "perigee-shader-profile"},
+                      {"version", 1},
+                      {"seconds", listing.seconds()},
+                      {"shaders", std::move(shaders)}};
     return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

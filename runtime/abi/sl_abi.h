@@ -162,6 +162,19 @@ typedef struct sl_point_query {
     sl_point_channel channel[SL_POINT_CHANNELS_MAX];
 } sl_point_query;
 
+/* Where a shader's time goes, by places of its source: one row for each sl_place of the object.
+ * Ticks are those of the processor's counter, from a place to the next one. */
+typedef struct sl_profile_row {
+    uint64_t ticks;
+    uint64_t packets; /* times a packet came here */
+    uint64_t lanes;   /* live lanes of those packets */
+} sl_profile_row;
+
+typedef struct sl_place {
+    const char* file;
+    int32_t line; /* 0: before and after the shader's own statements */
+} sl_place;
+
 typedef struct sl_services {
 #define SL_SERVICE(name, result, arguments, note) result(*name) arguments;
 #include "sl_services.def"
@@ -287,6 +300,8 @@ typedef struct sl_object {
     const sl_variant* const* variants; /* best first */
     const char* ir;                    /* IR text, for specialisation and --explain */
     const char* source;                /* name of the source file */
+    int32_t num_places;                /* compiled for profiles: places of sl_profile_row; else 0 */
+    const sl_place* places;
 } sl_object;
 
 #ifdef __cplusplus

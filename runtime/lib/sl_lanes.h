@@ -7,7 +7,8 @@
 #ifndef PERIGEE_SL_LANES_H
 #define PERIGEE_SL_LANES_H
 
-#if !defined(SL_LANES) || (SL_LANES != 4 && SL_LANES != 8)
+/* One lane is scalar C, which tests and benchmarks compare with; no object holds it. */
+#if !defined(SL_LANES) || (SL_LANES != 1 && SL_LANES != 4 && SL_LANES != 8)
 #error "define SL_LANES as 4 or 8 before including sl_shader.h"
 #endif
 #if SL_LANES == 8 && !defined(__AVX2__)
@@ -81,15 +82,17 @@ SL_INLINE int slu_int_of_f(float x) {
     return (int)x;
 }
 /* Truncates; -2^31 for NaN and what does not fit. */
+SL_INLINE int slu_whole_of_f(float x) {
+    return x >= -2147483648.0f && x < 2147483648.0f ? (int)x : -2147483647 - 1;
+}
 SL_INLINE sli slv_whole_of_f(slf x) {
 #if SL_LANES == 8
     return (sli)__builtin_ia32_cvttps2dq256(x);
-#else
+#elif SL_LANES == 4
     return (sli)__builtin_ia32_cvttps2dq(x);
+#else
+    return (sli){slu_whole_of_f(x[0])};
 #endif
-}
-SL_INLINE int slu_whole_of_f(float x) {
-    return x >= -2147483648.0f && x < 2147483648.0f ? (int)x : -2147483647 - 1;
 }
 SL_INLINE sli slv_bits_of_f(slf x) {
     return (sli)x;
@@ -151,8 +154,10 @@ SL_INLINE sli slv_select_i(sli m, sli a, sli b) {
 SL_INLINE slf slv_select_f(sli m, slf a, slf b) {
 #if SL_LANES == 8
     return __builtin_ia32_blendvps256(b, a, (slf)m);
-#else
+#elif SL_LANES == 4
     return (slf)(((sli)a & m) | ((sli)b & ~m));
+#else
+    return (slf){m[0] ? a[0] : b[0]};
 #endif
 }
 SL_INLINE int slu_select_i(int m, int a, int b) {
@@ -174,25 +179,29 @@ SL_INLINE float slu_select_sign_f(int m, float a, float b) {
     return m < 0 ? a : b;
 }
 /* a < b ? a : b and a > b ? a : b; b where either is NaN. */
-SL_INLINE slf slv_lesser_f(slf a, slf b) {
-#if SL_LANES == 8
-    return __builtin_ia32_minps256(a, b);
-#else
-    return __builtin_ia32_minps(a, b);
-#endif
-}
-SL_INLINE slf slv_greater_f(slf a, slf b) {
-#if SL_LANES == 8
-    return __builtin_ia32_maxps256(a, b);
-#else
-    return __builtin_ia32_maxps(a, b);
-#endif
-}
 SL_INLINE float slu_lesser_f(float a, float b) {
     return a < b ? a : b;
 }
 SL_INLINE float slu_greater_f(float a, float b) {
     return a > b ? a : b;
+}
+SL_INLINE slf slv_lesser_f(slf a, slf b) {
+#if SL_LANES == 8
+    return __builtin_ia32_minps256(a, b);
+#elif SL_LANES == 4
+    return __builtin_ia32_minps(a, b);
+#else
+    return (slf){slu_lesser_f(a[0], b[0])};
+#endif
+}
+SL_INLINE slf slv_greater_f(slf a, slf b) {
+#if SL_LANES == 8
+    return __builtin_ia32_maxps256(a, b);
+#elif SL_LANES == 4
+    return __builtin_ia32_maxps(a, b);
+#else
+    return (slf){slu_greater_f(a[0], b[0])};
+#endif
 }
 
 /* --- masks
@@ -203,15 +212,19 @@ SL_INLINE float slu_greater_f(float a, float b) {
 SL_INLINE uint32_t sl_bits(sli mask) {
 #if SL_LANES == 8
     return (uint32_t)__builtin_ia32_movmskps256((slf)mask);
-#else
+#elif SL_LANES == 4
     return (uint32_t)__builtin_ia32_movmskps((slf)mask);
+#else
+    return mask[0] < 0;
 #endif
 }
 SL_INLINE sli sl_mask(uint32_t bits) {
 #if SL_LANES == 8
     const sli lane = {1, 2, 4, 8, 16, 32, 64, 128};
-#else
+#elif SL_LANES == 4
     const sli lane = {1, 2, 4, 8};
+#else
+    const sli lane = {1};
 #endif
     return (((int)bits) & lane) == lane;
 }
@@ -273,29 +286,21 @@ SL_INLINE int slu_shr_i(int a, int n) {
 /* --- roots and rounding
  * ------------------------------------------------------------------------------------------- */
 
-SL_INLINE slf slv_root_f(slf x) { /* IEEE square root */
-#if SL_LANES == 8
-    return __builtin_ia32_sqrtps256(x);
-#else
-    return __builtin_ia32_sqrtps(x);
-#endif
-}
 SL_INLINE float slu_root_f(float x) {
     typedef float four __attribute__((vector_size(16)));
     return __builtin_ia32_sqrtps((four){x, 0, 0, 0})[0];
 }
-/* Largest integer not above x. Huge values, infinities and NaN are their own floor; the sign of
- * zero stays. */
-SL_INLINE slf slv_floor(slf x) {
+SL_INLINE slf slv_root_f(slf x) { /* IEEE square root */
 #if SL_LANES == 8
-    return __builtin_ia32_roundps256(x, 1);
+    return __builtin_ia32_sqrtps256(x);
+#elif SL_LANES == 4
+    return __builtin_ia32_sqrtps(x);
 #else
-    const sli small = (slf)((sli)x & 0x7fffffff) < 8388608.0f;
-    slf t = slv_float_of_i(slv_int_of_f((slf)((sli)x & small)));
-    t -= (slf)((sli)(t > x) & 0x3f800000);
-    return slv_select_f(small, (slf)((sli)t | ((sli)x & (int)0x80000000)), x);
+    return (slf){slu_root_f(x[0])};
 #endif
 }
+/* Largest integer not above x. Huge values, infinities and NaN are their own floor; the sign of
+ * zero stays. */
 SL_INLINE float slu_floor(float x) {
     const float magnitude = x < 0 ? -x : x;
     if (!(magnitude < 8388608.0f))
@@ -304,6 +309,18 @@ SL_INLINE float slu_floor(float x) {
     if (t > x)
         t -= 1;
     return slu_f_of_bits(slu_bits_of_f(t) | (slu_bits_of_f(x) & (int)0x80000000));
+}
+SL_INLINE slf slv_floor(slf x) {
+#if SL_LANES == 8
+    return __builtin_ia32_roundps256(x, 1);
+#elif SL_LANES == 4
+    const sli small = (slf)((sli)x & 0x7fffffff) < 8388608.0f;
+    slf t = slv_float_of_i(slv_int_of_f((slf)((sli)x & small)));
+    t -= (slf)((sli)(t > x) & 0x3f800000);
+    return slv_select_f(small, (slf)((sli)t | ((sli)x & (int)0x80000000)), x);
+#else
+    return (slf){slu_floor(x[0])};
+#endif
 }
 
 #endif

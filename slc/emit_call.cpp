@@ -16,6 +16,7 @@ struct Emitter::Call {
     const BuiltinRow& row;
     bool lanes;
     std::size_t num_args; // of the row; differences follow
+    std::string form;     // of the body: "_d"; "_shared", whose knots all lanes share
     std::vector<std::string> arguments;
     // Outputs that go through a temporary: (variable, temporary).
     std::vector<std::pair<VarId, std::string>> through;
@@ -52,7 +53,7 @@ void Emitter::call(const Stmt& s, const Block& b) {
     const bool is_difference = s.op == Op::Difference;
     const std::size_t num_args =
         s.args.size() - (is_difference ? difference_places(s.builtin).size() : 0);
-    Call c{s, b, row, runs_on_lanes(s), num_args, {}, {}};
+    Call c{s, b, row, runs_on_lanes(s), num_args, is_difference ? "_d" : "", {}, {}};
     refresh_planes(row.reads, b);
     Expr value;
     value.varying = c.lanes;
@@ -78,8 +79,8 @@ void Emitter::call(const Stmt& s, const Block& b) {
         if (is_difference) {
             differences(c);
         }
-        value.text = (c.lanes ? "slv_" : "slu_") + std::string(row.body) +
-                     (is_difference ? "_d(" : "(") + joined(c.arguments) + ")";
+        value.text = (c.lanes ? "slv_" : "slu_") + std::string(row.body) + c.form + "(" +
+                     joined(c.arguments) + ")";
     }
     if (may_defer(s, b) && c.through.empty()) {
         defer(s.dst, std::move(value));
@@ -199,6 +200,14 @@ void Emitter::spline_arguments(Call& c) {
     }
     c.arguments.push_back(fit(use(c.s.args[next++]), Form::Float, c.lanes).text);
     const VarId knots = c.s.args[next];
+    // Knots that all lanes share are looked up, not spread.
+    const auto first_knot = c.s.args.begin() + static_cast<std::ptrdiff_t>(next);
+    const auto end = c.s.args.begin() + static_cast<std::ptrdiff_t>(c.num_args);
+    const bool are_uniform = c.form.empty() && c.lanes &&
+                             std::none_of(first_knot, end, [this](VarId v) { return varying(v); });
+    if (are_uniform) {
+        c.form = "_shared";
+    }
     if (var(knots).array_length == 0) {
         c.arguments.push_back(knot_array(c, next));
         c.arguments.push_back(std::to_string(c.num_args - next));
@@ -206,7 +215,7 @@ void Emitter::spline_arguments(Call& c) {
     }
     const std::string length = std::to_string(var(knots).array_length);
     reading_.push_back(knots);
-    if (varying(knots) == c.lanes) {
+    if (varying(knots) == c.lanes || are_uniform) {
         c.arguments.push_back(name_of(knots).text);
     } else {
         const std::string copy = fresh("out");
@@ -225,15 +234,24 @@ std::string Emitter::knot_array(Call& c, std::size_t first) {
     for (std::size_t i = first; i < c.num_args; ++i) {
         wanted = std::max(wanted, form(c.s.args[i]));
     }
-    const bool lanes = c.lanes && wanted != Form::String;
+    const bool lanes = c.lanes && wanted != Form::String && c.form != "_shared";
     std::string list;
     for (std::size_t i = first; i < c.num_args; ++i) {
+        list += i > first ? ", " : "";
+        const Var& knot = var(c.s.args[i]);
+        if (!lanes && wanted == Form::Triple && knot.kind == VarKind::Const &&
+            is_triple(knot.type)) {
+            list += "{" + float_literal(knot.values[0]) + ", " + float_literal(knot.values[1]) +
+                    ", " + float_literal(knot.values[2]) + "}"; // the array can be a constant
+            continue;
+        }
         Expr e = use(c.s.args[i]);
         e = wanted == Form::String ? as_uniform(std::move(e), c.b)
                                    : fit(std::move(e), wanted, lanes);
-        list += (i > first ? ", " : "") + e.text;
+        list += e.text;
     }
-    return "(" + std::string(type_word(wanted, lanes)) + "[]){" + list + "}";
+    return std::string(lanes ? "(" : "(const ") + std::string(type_word(wanted, lanes)) + "[]){" +
+           list + "}";
 }
 
 // min(a, b, c) = min(min(a, b), c)

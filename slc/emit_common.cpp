@@ -168,8 +168,8 @@ void Emitter::load_param(VarId v) {
     }
     out_.line(declarator(v, false) + ";");
     out_.line("for (int sl_k = 0; sl_k < " + std::to_string(p.array_length) + "; sl_k++)");
-    out_.line("    " + name + "[sl_k] = sl_load_" + suffix + "(call, params->" + name + " + sl_k * " +
-              std::to_string(num_components(p.type)) + " * batch->stride);");
+    out_.line("    " + name + "[sl_k] = sl_load_" + suffix + "(call, params->" + name +
+              " + sl_k * " + std::to_string(num_components(p.type)) + " * batch->stride);");
 }
 
 void Emitter::store_results() {

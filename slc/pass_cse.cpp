@@ -148,10 +148,11 @@ void ValueNumbering::statement(Stmt& s) {
 }
 
 bool ValueNumbering::is_value(const Stmt& s) const {
-    if (s.dst == no_var || s.op == Op::Store || s.op > Op::Call || var(s.dst).array_length != 0) {
+    if (s.dst == no_var || s.op == Op::Store || s.op > Op::Difference ||
+        var(s.dst).array_length != 0) {
         return false;
     }
-    if (s.op != Op::Call) {
+    if (s.op < Op::Call) {
         return true;
     }
     const BuiltinRow& row = builtin_of(s);
@@ -159,7 +160,9 @@ bool ValueNumbering::is_value(const Stmt& s) const {
     for (const ArgSpec& arg : row.args) {
         has_outputs = has_outputs || arg.is_output;
     }
-    return row.has(PropPure) && !has_outputs;
+    // Names of spaces mean the same from the beginning of an execution to its end.
+    const bool is_stable = row.has(PropPure) || (row.has(PropSpaces) && !row.has(PropEffect));
+    return is_stable && !has_outputs;
 }
 
 Key ValueNumbering::key_of(const Stmt& s) const {

@@ -60,7 +60,8 @@ void Hoister::mark_changing(const Stmt& s, int step) {
 }
 
 bool Hoister::may_move(const Stmt& s) const {
-    const bool is_pure = s.op == Op::Call ? builtin_of(s).has(PropPure) : s.op < Op::Call;
+    const bool is_call = s.op == Op::Call || s.op == Op::Difference;
+    const bool is_pure = is_call ? builtin_of(s).has(PropPure) : s.op < Op::Call;
     if (!is_pure || s.dst == no_var || s.op == Op::Store || s.op == Op::Copy) {
         return false;
     }

@@ -246,19 +246,28 @@ SL_INLINE slu3 slu_at_3(const slu3* array, int index) {
 }
 /* Uniform arrays with an index per lane. */
 SL_INLINE slf slu_at_lanes_f(const float* array, sli index) {
+#if SL_LANES == 8
+    return __builtin_ia32_gathersiv8sf((slf){0}, array, index, (slf) ~(sli){0}, 4);
+#else
     slf r = {0};
     for (int i = 0; i < SL_LANES; i++)
         r[i] = array[index[i]];
     return r;
+#endif
 }
 SL_INLINE slv slu_at_lanes_3(const slu3* array, sli index) {
-    slv r = {{0}, {0}, {0}};
-    for (int i = 0; i < SL_LANES; i++) {
-        const slu3 a = array[index[i]];
-        r.x[i] = a.x, r.y[i] = a.y, r.z[i] = a.z;
-    }
+    const sli at = index + index + index; /* slu3 is three floats */
+    slv r;
+    r.x = slu_at_lanes_f(&array->x, at);
+    r.y = slu_at_lanes_f(&array->y, at);
+    r.z = slu_at_lanes_f(&array->z, at);
     return r;
 }
+/* spline() on knots that all lanes share. */
+slf slv_spline_f_shared(sl_string basis, slf x, const float* knots, int n)
+    SL_SYMBOL(slv_spline_f_shared);
+slv slv_spline_3_shared(sl_string basis, slf x, const slu3* knots, int n)
+    SL_SYMBOL(slv_spline_3_shared);
 SL_INLINE slm slu_at_lanes_m(const slum* array, sli index) {
     slm r = slv_spread_m(array[0]);
     for (int i = 0; i < SL_LANES; i++)

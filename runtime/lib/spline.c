@@ -50,3 +50,4 @@ static const basis* find_basis(sl_string name, int* inverse) {
 #include "sl_both_worlds.h"
 #define SL_BODY "diff_spline_body.h"
 #include "sl_both_worlds.h"
+#include "spline_shared.h"

@@ -64,9 +64,9 @@ struct ThreadState {
     rt::ShadeBatch surface;
     rt::ShadeBatch volume;
     std::vector<std::unique_ptr<LightRun>> lights; // by light, made on first use
-    std::uint64_t batch_serial = 0; // grows with every batch: stale light results are told by it
-    std::string printed;            // printf of the bucket in work
-    PixelTrace* trace = nullptr;    // --trace-pixel: told what happens
+    std::uint64_t batch_serial = 0;   // grows with every batch: stale light results are told by it
+    std::string printed;              // printf of the bucket in work
+    PixelTrace* trace = nullptr;      // --trace-pixel: told what happens
     ShaderProfile* profile = nullptr; // --profile-shaders: this thread's rows
 };
 

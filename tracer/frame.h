@@ -49,7 +49,7 @@ struct FrameTools {
     base::Diag& diag;
     Stats& stats;
     ShaderListing* listing = nullptr; // --profile-shaders
-    Preview* preview = nullptr; // a small picture of the first display, for reports
+    Preview* preview = nullptr;       // a small picture of the first display, for reports
 };
 
 // The filtered picture, before exposure and imager; for tests and other users of the picture.

@@ -254,6 +254,7 @@ private:
         report_(engine, 0, (std::string("no points ") + query->file).c_str());
         return 0;
     }
+    static sl_profile_row* profile_(void*) { return nullptr; }
 
     sl_services services_{};
     std::uint32_t lanes_;

@@ -254,7 +254,9 @@ private:
         report_(engine, 0, (std::string("no points ") + query->file).c_str());
         return 0;
     }
-    static sl_profile_row* profile_(void*) { return nullptr; }
+    static sl_profile_row* profile_(void*) {
+        return nullptr;
+    }
 
     sl_services services_{};
     std::uint32_t lanes_;

@@ -618,6 +618,7 @@ TEST(Differences, EveryRowThatPromisesOneHasOne) {
         SL_STATE = 0,
         SL_RANDOM = 0,
         SL_INOUT = 0,
+        SL_EXACT = 0,
         SL_CHANNEL = 0,
         SL_LINEAR = 0,
         SL_HIDDEN = 0

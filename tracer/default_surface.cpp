@@ -64,6 +64,8 @@ const sl_object& default_surface_object() {
         .variants = variants,
         .ir = "",
         .source = "default_surface.cpp",
+        .num_places = 0,
+        .places = nullptr,
     };
     return object;
 }

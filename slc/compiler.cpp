@@ -15,7 +15,8 @@ namespace {
 
 // One compilation: the sources and messages all stages share.
 struct Session {
-    Session(base::Diag& diag, const std::string& name) : messages(diag, sources) {
+    Session(base::Diag& diag, const std::string& name, const CompileOptions& options)
+        : messages(diag, sources, options.on_message) {
         sources.add(name);
     }
     Sources sources;
@@ -84,7 +85,7 @@ Unit build(std::string_view raw, const std::string& name, const CompileOptions& 
 
 Unit build_file(const std::string& path, const CompileOptions& options, bool with_passes,
                 base::Diag& diag) {
-    Session session(diag, path);
+    Session session(diag, path, options);
     const auto raw = read_or_complain(path, session.messages);
     if (!raw) {
         Unit unit;
@@ -102,7 +103,7 @@ Unit compile_file(const std::string& path, const CompileOptions& options, base::
 
 Unit compile_text(std::string_view text, const std::string& name, const CompileOptions& options,
                   base::Diag& diag) {
-    Session session(diag, name);
+    Session session(diag, name, options);
     return build(text, name, options, true, session);
 }
 
@@ -112,13 +113,13 @@ Unit front_end_file(const std::string& path, const CompileOptions& options, base
 
 Unit front_end_text(std::string_view text, const std::string& name, const CompileOptions& options,
                     base::Diag& diag) {
-    Session session(diag, name);
+    Session session(diag, name, options);
     return build(text, name, options, false, session);
 }
 
 std::optional<std::string> preprocess_file(const std::string& path, const CompileOptions& options,
                                            base::Diag& diag) {
-    Session session(diag, path);
+    Session session(diag, path, options);
     const auto raw = read_or_complain(path, session.messages);
     return raw ? preprocessed(*raw, path, options, session) : std::nullopt;
 }
@@ -135,7 +136,7 @@ std::optional<DumpKind> dump_kind(std::string_view name) {
 
 std::optional<std::string> dump_file(const std::string& path, DumpKind kind,
                                      const CompileOptions& options, base::Diag& diag) {
-    Session session(diag, path);
+    Session session(diag, path, options);
     const auto raw = read_or_complain(path, session.messages);
     const auto text = raw ? preprocessed(*raw, path, options, session) : std::nullopt;
     if (!text) {

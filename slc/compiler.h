@@ -18,14 +18,28 @@ namespace slc {
 
 class Messages;
 
+// A message as data, for editors. Columns count bytes from 1; 0: no place.
+struct Message {
+    base::Severity severity = base::Severity::Error;
+    base::Code code = base::Code::None;
+    std::string file;
+    std::uint32_t line = 0, column = 0;
+    std::uint32_t end_column = 0; // of the word at the place, exclusive
+    std::string text;
+    std::string note; // advice after the text: what to write, what was done instead
+};
+
 struct CompileOptions {
     std::vector<std::string> include_dirs; // -I, in order
+    std::string standard_headers;          // looked in after all others; "" = nowhere
     std::vector<std::string> defines;      // -D, "NAME" or "NAME=value"
     std::string preprocessor;        // C compiler to run as preprocessor; "" = cc, gcc or clang
     bool is_preprocessed = false;    // the text has been through a preprocessor; none is run
     bool optimise = true;            // false: only the passes the emitter cannot do without
     bool exact = false;              // folds only what has the bits it would have at run time
     std::function<bool()> cancelled; // true: ends the programs that run, without a message
+    // If set, messages about the source go here instead of to the Diag.
+    std::function<void(const Message&)> on_message;
 };
 
 // All shaders of one source file.

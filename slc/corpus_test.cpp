@@ -8,6 +8,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <set>
 
 namespace slc {
 namespace {
@@ -15,12 +17,35 @@ namespace {
 using testing::QuietDiag;
 namespace fs = std::filesystem;
 
+fs::path root_folder() {
+    const char* const root = std::getenv("PERIGEE_SOURCE_ROOT");
+    return root != nullptr ? root : ".";
+}
+
+// With the headers that shaders may count on.
+CompileOptions options_with_headers() {
+    CompileOptions options;
+    options.standard_headers = (root_folder() / "shaders/headers").string();
+    return options;
+}
+
+// The "// warns: text" lines at the head of a shader: what it must be warned about, no more.
+std::multiset<std::string> expected_warnings(const fs::path& path) {
+    std::multiset<std::string> expected;
+    std::ifstream file(path);
+    const std::string mark = "// warns: ";
+    for (std::string line; std::getline(file, line) && line.starts_with("//");) {
+        if (line.starts_with(mark)) {
+            expected.insert(line.substr(mark.size()));
+        }
+    }
+    return expected;
+}
+
 std::vector<fs::path> all_shaders() {
     std::vector<fs::path> paths;
-    const char* const root = std::getenv("PERIGEE_SOURCE_ROOT");
     for (const char* folder : {"shaders", "testsuite/sl/corpus"}) {
-        for (const auto& entry :
-             fs::directory_iterator(fs::path(root != nullptr ? root : ".") / folder)) {
+        for (const auto& entry : fs::directory_iterator(root_folder() / folder)) {
             if (entry.path().extension() == ".sl") {
                 paths.push_back(entry.path());
             }
@@ -136,11 +161,11 @@ void expect_same_results(const Program& before, const Program& after) {
 
 TEST(Corpus, CompilesSoundAndUnchangedByPasses) {
     const auto paths = all_shaders();
-    EXPECT_GE(paths.size(), 45U);
+    EXPECT_GE(paths.size(), 110U);
     std::size_t programs = 0;
     for (const fs::path& path : paths) {
         QuietDiag diag;
-        CompileOptions plain;
+        CompileOptions plain = options_with_headers();
         plain.optimise = false;
         const Unit raw = compile_file(path.string(), plain, diag.get());
         EXPECT_TRUE(raw.ok()) << diag.text();
@@ -153,14 +178,44 @@ TEST(Corpus, CompilesSoundAndUnchangedByPasses) {
             ++programs;
         }
     }
-    EXPECT_GE(programs, 48U);
+    EXPECT_GE(programs, 112U);
+}
+
+TEST(Corpus, WarnsWhereDeservedOnly) {
+    for (const fs::path& path : all_shaders()) {
+        QuietDiag diag;
+        (void)compile_file(path.string(), options_with_headers(), diag.get());
+        std::multiset<std::string> expected = expected_warnings(path);
+        for (const std::string& message : diag.get().messages()) {
+            const auto known =
+                std::find_if(expected.begin(), expected.end(), [&](const std::string& text) {
+                    return message.find(text) != std::string::npos;
+                });
+            EXPECT_NE(known, expected.end()) << message;
+            if (known != expected.end()) {
+                expected.erase(known);
+            }
+        }
+        EXPECT_TRUE(expected.empty()) << path << ": no warning about " << *expected.begin();
+    }
+}
+
+// A header alone is a shader's beginning like any other.
+TEST(Corpus, HeadersStandAlone) {
+    for (const auto& entry : fs::directory_iterator(root_folder() / "shaders/headers")) {
+        QuietDiag diag;
+        const std::string text =
+            "#include \"" + entry.path().filename().string() + "\"\nsurface t() { Ci = 1; }\n";
+        EXPECT_TRUE(compile_text(text, "t.sl", options_with_headers(), diag.get()).ok());
+        EXPECT_EQ(diag.text(), "");
+    }
 }
 
 // A variable the analysis calls unneeded may hold anything: garbage in it changes nothing.
 TEST(Corpus, UnneededVariablesDoNotMatter) {
     for (const fs::path& path : all_shaders()) {
         QuietDiag diag;
-        const Unit unit = compile_file(path.string(), {}, diag.get());
+        const Unit unit = compile_file(path.string(), options_with_headers(), diag.get());
         for (const Program& program : unit.programs) {
             const Facts facts = analyse(program);
             Host host;

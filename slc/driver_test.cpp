@@ -430,6 +430,26 @@ TEST_F(Programs, MessagesComeInTheOrderOfTheFiles) {
     }
 }
 
+TEST_F(Programs, MessagesAsJson) {
+    write(in("bad.sl"),
+          "surface bad() {\n  Ci = nois(P) + \"a\\\\\";\n  float x;\n  float x = Cs;\n}\n");
+    const ProcessResult result = slc({"--check", "--messages=json", in("bad.sl")});
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_EQ(result.err, "");
+    EXPECT_NE(result.out.find("bad.sl\", \"line\": 2, \"column\": 8, \"endColumn\": 12, "
+                              "\"severity\": \"error\", \"code\": \"RIE_SYNTAX\", \"text\": "
+                              "\"function 'nois' is not defined, did you mean 'noise'?\"}\n"),
+              std::string::npos)
+        << result.out;
+    EXPECT_NE(result.out.find("\"note\": \"this one is used from here on\"}"), std::string::npos)
+        << result.out;
+    write(in("good.sl"), matte_text);
+    const ProcessResult good = slc({"--check", "--messages=json", in("good.sl")});
+    EXPECT_EQ(good.exit_code, 0);
+    EXPECT_EQ(good.out + good.err, "");
+    EXPECT_EQ(slc({"--messages=xml", in("good.sl")}).exit_code, 2);
+}
+
 TEST_F(Programs, TellPrintsTheInterface) {
     write(in("told.sl"),
           "light told(float intensity = 2 * 0.5; color lightcolor = 1; point from = point "

@@ -7,6 +7,7 @@
 #include "runtime/base/interrupt.h"
 #include "runtime/base/seal.h"
 #include "sl_fingerprint.h"
+#include "slc/messages.h"
 #include "slc/options.h"
 
 #include <algorithm>
@@ -100,7 +101,13 @@ Outcome compile(const std::string& file, const Options& options, FileResult& res
         return Outcome::BadInput;
     }
     if (unit.programs.empty()) {
-        diag.report(base::Severity::Warning, base::Code::NoShader, {}, file + " defines no shader");
+        const std::string text = file + " defines no shader";
+        if (options.object.front.on_message) {
+            options.object.front.on_message({base::Severity::Warning, base::Code::NoShader, file, 0,
+                                             0, 0, "no shader is defined", ""});
+        } else {
+            diag.report(base::Severity::Warning, base::Code::NoShader, {}, text);
+        }
     }
     Outcome outcome = Outcome::Done;
     for (const slc::Program& program : unit.programs) {
@@ -126,7 +133,13 @@ Outcome take_object(const std::string& file, FileResult& result) {
     return Outcome::Done;
 }
 
-void process(const std::string& file, const Options& options, FileResult& result) {
+void process(const std::string& file, const Options& given, FileResult& result) {
+    Options options = given;
+    if (options.json_messages) {
+        options.object.front.on_message = [&result](const slc::Message& message) {
+            result.out += slc::json_line(message) + "\n";
+        };
+    }
     if (!options.dump.empty()) {
         result.outcome = dump(file, options, result.diag, result.out);
     } else if (options.makes_package() && file.ends_with(".slo")) {
@@ -225,6 +238,7 @@ int main(int argc, char** argv) {
     }
     base::catch_interrupts();
     parsed.options.object.front.cancelled = base::is_interrupted;
+    parsed.options.object.front.standard_headers = slc::standard_headers();
     const Outcome outcome = process_all(parsed.options);
     base::finish_interrupt();
     return exit_code(outcome);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 
 namespace slc {
 
@@ -32,6 +33,47 @@ std::string excerpt(std::string_view line, std::uint32_t col) {
     return "\n" + shown + "\n" + caret + "^";
 }
 
+// Column after the word, number, string or mark that begins at `col`.
+std::uint32_t word_end(std::string_view line, std::uint32_t col) {
+    if (col == 0 || col > line.size()) {
+        return col + 1;
+    }
+    const auto in_word = [&](std::size_t i) {
+        return std::isalnum(static_cast<unsigned char>(line[i])) != 0 || line[i] == '_';
+    };
+    std::size_t end = col - 1;
+    if (line[end] == '"') {
+        const std::size_t close = line.find('"', end + 1);
+        return static_cast<std::uint32_t>(
+            (close == std::string_view::npos ? line.size() : close + 1) + 1);
+    }
+    while (end < line.size() && in_word(end)) {
+        ++end;
+    }
+    return static_cast<std::uint32_t>(std::max<std::size_t>(end, col) + 1);
+}
+
+std::string json_text(std::string_view text) {
+    static constexpr std::string_view hex = "0123456789abcdef";
+    std::string out = "\"";
+    for (const char c : text) {
+        const auto u = static_cast<unsigned char>(c);
+        if (c == '"' || c == '\\') {
+            out += '\\';
+            out += c;
+        } else if (c == '\n') {
+            out += "\\n";
+        } else if (u < 32 || u >= 127) { // JSON is UTF-8, sources may be Latin-1
+            out += "\\u00";
+            out += hex[u >> 4];
+            out += hex[u & 15];
+        } else {
+            out += c;
+        }
+    }
+    return out + "\"";
+}
+
 // Levenshtein distance; both words are at most max_word long.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
     std::array<std::size_t, max_word + 1> row{};
@@ -55,6 +97,26 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 void Messages::report(base::Severity severity, base::Code code, Loc loc, std::string_view text) {
     const auto& names = sources_.names();
+    if (observer_) {
+        const bool placed = loc.file < names.size();
+        const std::size_t semicolon = text.find("; ");
+        Message message{severity,
+                        code,
+                        placed ? names[loc.file] : "",
+                        placed ? loc.line : 0,
+                        placed ? loc.col : 0,
+                        0,
+                        std::string(text.substr(0, semicolon)),
+                        ""};
+        if (semicolon != std::string_view::npos) {
+            message.note = text.substr(semicolon + 2);
+        }
+        if (placed) {
+            message.end_column = word_end(sources_.line(loc.file, loc.line), loc.col);
+        }
+        observer_(message);
+        return;
+    }
     base::SourcePos pos;
     if (loc.file < names.size()) {
         pos = {diag_.file_id(names[loc.file]), loc.line, loc.col};
@@ -67,7 +129,10 @@ void Messages::error(Loc loc, std::string_view text, base::Code code) {
     if (++num_errors_ <= max_errors) {
         report(base::Severity::Error, code, loc, text);
     }
-    if (num_errors_ == max_errors) {
+    if (num_errors_ == max_errors && observer_) {
+        observer_({base::Severity::Error, base::Code::Limit, "", 0, 0, 0,
+                   "too many errors, stopped", ""});
+    } else if (num_errors_ == max_errors) {
         diag_.report(base::Severity::Error, base::Code::Limit, {}, "too many errors, stopped");
     }
 }
@@ -99,6 +164,9 @@ void Messages::warning_once(Loc loc, std::string_view text) {
 
 void Messages::system_error(std::string_view text, base::Code code) {
     ++num_errors_;
+    if (observer_) {
+        observer_({base::Severity::Error, code, "", 0, 0, 0, std::string(text), ""});
+    }
     diag_.report(base::Severity::Error, code, {}, text);
 }
 
@@ -119,6 +187,21 @@ std::string spelling_hint(std::string_view wrong, std::span<const std::string_vi
         }
     }
     return found.empty() ? std::string() : ", did you mean " + quoted(found) + "?";
+}
+
+std::string json_line(const Message& message) {
+    std::string out = "{\"file\": " + json_text(message.file);
+    const auto number = [&](const char* name, std::uint32_t value) {
+        out += value > 0 ? std::string(", \"") + name + "\": " + std::to_string(value) : "";
+    };
+    number("line", message.line);
+    number("column", message.column);
+    number("endColumn", message.end_column);
+    out += ", \"severity\": " + json_text(base::severity_name(message.severity)) +
+           ", \"code\": " + json_text(base::code_name(message.code)) +
+           ", \"text\": " + json_text(message.text);
+    out += message.note.empty() ? "" : ", \"note\": " + json_text(message.note);
+    return out + "}";
 }
 
 std::string quoted(std::string_view name) {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "runtime/base/diag.h"
+#include "slc/compiler.h"
 #include "slc/ir.h"
 #include "slc/source.h"
 
@@ -17,7 +18,9 @@ namespace slc {
 
 class Messages {
 public:
-    Messages(base::Diag& diag, Sources& sources) : diag_(diag), sources_(sources) {}
+    using Observer = std::function<void(const Message&)>;
+    Messages(base::Diag& diag, Sources& sources, Observer observer = {})
+        : diag_(diag), sources_(sources), observer_(std::move(observer)) {}
 
     void error(Loc loc, std::string_view text, base::Code code = base::Code::Syntax);
     void warning(Loc loc, std::string_view text);
@@ -40,6 +43,7 @@ private:
     bool first_time(Loc loc, std::string_view text);
     base::Diag& diag_;
     Sources& sources_;
+    Observer observer_;
     std::size_t num_errors_ = 0;
     std::size_t num_warnings_ = 0;
     std::set<std::string> seen_;
@@ -48,6 +52,9 @@ private:
 // ", did you mean 'x'?" for the nearest of the candidates, or "" when none is near.
 [[nodiscard]] std::string spelling_hint(std::string_view wrong,
                                         std::span<const std::string_view> candidates);
+
+// One line of JSON for a message, without the newline.
+[[nodiscard]] std::string json_line(const Message& message);
 
 // 'name'
 [[nodiscard]] std::string quoted(std::string_view name);

@@ -118,6 +118,13 @@ private:
         case Id::check:
             o.check = true;
             break;
+        case Id::messages:
+            o.json_messages = value == "json";
+            o.quiet = o.quiet || o.json_messages; // nothing else on standard output
+            if (value != "json" && value != "text") {
+                result_.error = "--messages wants text or json, not \"" + value + "\"";
+            }
+            break;
         case Id::explain:
             o.explain = true;
             break;

@@ -23,6 +23,7 @@ struct Options {
     std::string dump;
     bool quiet = false;
     bool check = false;
+    bool json_messages = false;
     bool explain = false;
     bool help = false, version = false;
     unsigned jobs = std::max(1U, std::thread::hardware_concurrency());

@@ -28,6 +28,9 @@ std::vector<std::string> arguments(const std::string& compiler, const std::strin
         argv.push_back("-I" + dir);
     }
     argv.push_back("-I" + directory); // <f> looks beside the file last (sl.md 1.2)
+    if (!options.standard_headers.empty()) {
+        argv.insert(argv.end(), {"-idirafter", options.standard_headers});
+    }
     argv.push_back("-");
     return argv;
 }

@@ -64,6 +64,11 @@ bool place_files(Toolchain& tools) {
     return false;
 }
 
+bool is_folder(const std::string& path) {
+    struct stat info {};
+    return ::stat(path.c_str(), &info) == 0 && S_ISDIR(info.st_mode);
+}
+
 std::vector<std::string> split(std::string_view text, char separator) {
     std::vector<std::string> parts;
     while (!text.empty()) {
@@ -192,6 +197,14 @@ std::string file_identity(const std::string& path) {
 
 int native_lanes() {
     return __builtin_cpu_supports("avx2") != 0 ? 8 : 4;
+}
+
+std::string standard_headers() {
+    const fs::path top = fs::path(base::program_directory()).parent_path();
+    const std::string installed = (top / "share/perigee/headers").string();
+    const std::string source = std::string(SLC_SOURCE_ROOT) + "/shaders/headers";
+    const bool is_built = is_file((top / "runtime/lib/libsl_lanes4.a").string());
+    return is_folder(installed) ? installed : is_built && is_folder(source) ? source : "";
 }
 
 std::optional<Toolchain> find_toolchain(const std::string& compiler, base::Diag& diag) {

@@ -26,6 +26,10 @@ struct Toolchain {
 [[nodiscard]] std::optional<Toolchain> find_toolchain(const std::string& compiler,
                                                       base::Diag& diag);
 
+// The folder of the headers that published shaders include (docs/shading-language.md), found beside
+// the running program like the rest; "" if there is none.
+[[nodiscard]] std::string standard_headers();
+
 // The C text of one variant.
 struct VariantText {
     int lanes = 8;

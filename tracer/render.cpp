@@ -140,6 +140,7 @@ slc::ObjectOptions compile_options(const std::string& index_dir, const rt::Cance
     options.native_only = true;
     options.index_dir = index_dir;
     options.front.cancelled = cancelled;
+    options.front.standard_headers = slc::standard_headers();
     return options;
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// warns: variable 'i' is assigned a varying value
 /* Marches through a closed primitive; compares colours with numbers. */
 surface hypertexture(float radius = 1, density = 4; uniform float stepsize = .1, max_steps = 64;)
 {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// warns: variable 'j' is assigned a varying value
+// warns: variable 'i' is assigned a varying value
 // Loops: break and continue with counts, per point exits, nested conditions.
 surface loops(uniform float maximum = 8; float threshold = .5)
 {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// warns: parameter 'who' is assigned a varying value
 /* Message passing and state queries with all kinds of variables. */
 surface messages(output varying color seen = 0; output uniform string who = "";)
 {

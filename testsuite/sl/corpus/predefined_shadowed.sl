@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// warns: formal 'P' is not 'output'
 // Formals and locals called like predefined variables; built-ins still read the global ones.
 float at(point P; float s, t) { P += 1; return noise(P) * s + t; }
 surface predefined_shadowed(float u_scale = 1; color Cs = (1, 0, 0))

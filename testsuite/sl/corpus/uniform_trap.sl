@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// warns: variable 'count' is assigned a varying value
+// warns: parameter 'result' is assigned a varying value
 /* Assigns uniform variables in places where points take different ways. */
 surface uniform_trap(uniform float seed = 1; output float result = 0;)
 {

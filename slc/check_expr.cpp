@@ -519,6 +519,12 @@ void Checker::deliver(Expr& e, Type wanted, std::string_view what) {
             best_type = t;
         }
     }
+    if (best == no_cost && wanted == Type::Float && c[Type::Color] < last_resort) {
+        messages_.warning(e.loc, std::string(what) +
+                                     " is float, but color is given; its first component is taken");
+        settle(e, Type::Color);
+        return;
+    }
     if (best == no_cost) {
         const std::string from = describe(c);
         const bool castable =

@@ -153,7 +153,6 @@ TEST(Check, Errors) {
         {"float roughness = 1; Ci = roughnes;", "did you mean 'roughness'?"},
         {"Ci = nois(P);", "function 'nois' is not defined, did you mean 'noise'?"},
         {"float x = (1, 2, 3);", "the value of 'x' is float, but point is given"},
-        {"float x = Cs;", "the value of 'x' is float, but color is given"},
         {"string x = 1;", "the value of 'x' is string, but float is given"},
         {"float x = \"a\" + \"b\";", "operator + does not take string and string"},
         {"float x = \"a\" < \"b\";", "operator < does not take string"},

@@ -432,7 +432,7 @@ TEST_F(Programs, MessagesComeInTheOrderOfTheFiles) {
 
 TEST_F(Programs, MessagesAsJson) {
     write(in("bad.sl"),
-          "surface bad() {\n  Ci = nois(P) + \"a\\\\\";\n  float x;\n  float x = Cs;\n}\n");
+          "surface bad() {\n  Ci = nois(P) + \"a\\\\\";\n  float x;\n  float x = P;\n}\n");
     const ProcessResult result = slc({"--check", "--messages=json", in("bad.sl")});
     EXPECT_EQ(result.exit_code, 1);
     EXPECT_EQ(result.err, "");

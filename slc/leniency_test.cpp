@@ -190,8 +190,13 @@ constexpr Probe language[] = {
     {"comparisons of triples", "surface t() { if (Oi < .999 && P >= 0) Ci = N != 0; }"},
     {"not before equal", "surface t() { if (!s == t) Ci = 1; }", Expect::Warns,
      "applies to the left operand only"},
-    {"a color for a float", "surface t() { float f = Cs; Ci = f; }", Expect::Fails,
-     "the value of 'f' is float, but color is given"},
+    {"a color for a float",
+     "float g() { return Os; }\n"
+     "surface t() { float f = visibility(P, E), k[2] = {1, 2}; k[0] = Cs; if (Oi) Ci = f * g() * "
+     "k[0]; }",
+     Expect::Warns, "the value of 'f' is float, but color is given; its first component is taken"},
+    {"a point for a float", "surface t() { float f = P; Ci = f; }", Expect::Fails,
+     "the value of 'f' is float, but point is given"},
     // --- predefined variables
     {"results in a displacement", "displacement t() { P += N; Ci = 1; Oi = 1; }", Expect::Warns,
      "'Ci' does not exist in displacement shaders; a local variable"},
@@ -269,6 +274,7 @@ TEST(Leniency, Values) {
     EXPECT_EQ(evaluate_float("c[0] + 10 * c[1] + 100 * c[2]", "color c = 1; c[1] = 2; c[2] += 3;"),
               421);
     EXPECT_EQ(evaluate_float("p[1][2]", "point p[2]; p[1] = (1, 2, 3); p[1][2] *= 2;"), 6);
+    EXPECT_EQ(evaluate_float("f", "color c = (3, 4, 5); float f = c;"), 3);
     EXPECT_EQ(evaluate_float("m[3][1]", "matrix m = 2; m[3][1] = 5;"), 5);
     EXPECT_EQ(evaluate_float("-1 % 3"), 2);
     EXPECT_EQ(evaluate_float("i", "float i = 7; do { i += 1; } while (i < 5);"), 8);

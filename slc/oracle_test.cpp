@@ -235,6 +235,31 @@ TEST_P(Shaders, LanguageCases) {
     }
 }
 
+// The corpus of whole shaders, one way: what the other ways add is in the tests above.
+TEST(OracleCorpus, Agrees) {
+    const std::string root = SLC_TEST_ROOT;
+    CompileOptions options;
+    options.standard_headers = root + "/shaders/headers";
+    int num_compared = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(root + "/testsuite/sl/corpus")) {
+        if (entry.path().extension() != ".sl") {
+            continue;
+        }
+        base::Diag diag(std::tmpfile());
+        const Unit unit = compile_file(entry.path().string(), options, diag);
+        for (const Program& program : unit.programs) {
+            constexpr auto incomparable =
+                SL_FACT_area_operators | SL_FACT_random | SL_FACT_textures | SL_FACT_traces;
+            if ((analyse(program).facts & incomparable) == 0) {
+                expect_same(program, {native_lanes(), 0},
+                            entry.path().string() + ": " + program.name);
+                ++num_compared;
+            }
+        }
+    }
+    EXPECT_GE(num_compared, 30);
+}
+
 std::string way_name(const ::testing::TestParamInfo<BuildWay>& info) {
     return "Lanes" + std::to_string(info.param.lanes) + "O" +
            std::to_string(info.param.optimisation);

@@ -379,6 +379,9 @@ void Parser::shader_formals(ast::Shader& shader) {
 // fn-formals = { ";" } fn-formal { ( ";" | "," ) fn-formal } { ";" }
 // fn-formal  = [ "output" ] typespec fn-name { "," fn-name }
 void Parser::fn_formals(Function& function) {
+    if (is(Tok::WordVoid) && is(Tok::RightParen, 1)) { // f(void), as in C
+        take();
+    }
     while (!is(Tok::RightParen)) {
         if (accept(Tok::Semicolon)) {
             continue;

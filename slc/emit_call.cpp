@@ -36,6 +36,11 @@ std::string joined(const std::vector<std::string>& parts) {
     return text;
 }
 
+// Is about the light of the loop around it.
+bool asks_light(const BuiltinRow& row) {
+    return row.body == "message_lightsource" || row.body == "shadername_of";
+}
+
 } // namespace
 
 bool Emitter::runs_on_lanes(const Stmt& s) const {
@@ -87,6 +92,9 @@ void Emitter::call(const Stmt& s, const Block& b) {
         return;
     }
     note_place(s.loc);
+    if (asks_light(row)) {
+        out_.line("call->lights = " + lights_around(b) + ";");
+    }
     if (s.dst == no_var) {
         out_.line(value.text + ";");
     } else {

@@ -161,6 +161,8 @@ private:
     void masked_loop(const Stmt& s, const Block& b);
     void scope(const Stmt& s, const Block& b);
     void illuminance(const Stmt& s, const Block& b);
+    void light_options(const Stmt& s, const std::string& lights);
+    [[nodiscard]] std::string lights_around(const Block& b) const;
     void illuminate(const Stmt& s, const Block& b);
     void gather(const Stmt& s);
     void leave(const Stmt& s, const Block& b);

@@ -316,6 +316,7 @@ void Emitter::illuminance(const Stmt& s, const Block& b) {
     out_.line("sl_light_loop " + lights + ";");
     out_.line((has_cone ? "sl_lights_begin_cone" : "sl_lights_begin") + arguments + category +
               ");");
+    light_options(s, lights);
     out_.open("for (" + std::string(dialect_.varying_truth) + " " + lit +
               "; sl_lights_next(call, &" + lights + ", &" + lit + ");) {");
     jumpable_.push_back(&s);
@@ -335,6 +336,7 @@ void Emitter::illuminance(const Stmt& s, const Block& b) {
     }
     for (const auto& [option, v] : s.options) {
         if (option.starts_with("light:")) {
+            out_.line("call->lights = &" + lights + ";");
             out_.line("slv_message_lightsource(call, " + lit + ", " +
                       string_literal(option.substr(6)) + ", &" + typed_value(v) + ");");
         }
@@ -343,6 +345,41 @@ void Emitter::illuminance(const Stmt& s, const Block& b) {
     jumpable_.pop_back();
     out_.close();
     place_label("done_" + stems_[&s]);
+}
+
+// "lightcache" and what goes to the lights, before the loop.
+void Emitter::light_options(const Stmt& s, const std::string& lights) {
+    std::string sends;
+    std::size_t num_sends = 0;
+    for (const auto& [option, v] : s.options) {
+        if (option == "lightcache" && var(v).type == Type::String) {
+            Expr mode = use(v);
+            mode = mode.varying ? apply("lane_s", Form::String, true, {mode.text, "0"}) : mode;
+            out_.line(lights + ".refresh = " + mode.text + " == " + string_literal("refresh") +
+                      ";");
+        } else if (option.starts_with("send:light:")) {
+            sends += (num_sends > 0 ? ", " : "") +
+                     std::string("{SL_TYPE_string, 0, 0, (sl_string[]){") +
+                     string_literal(option.substr(11)) + "}}, " +
+                     typed_value(v).substr(std::string("(sl_value)").size());
+            num_sends += 2;
+        }
+    }
+    if (num_sends > 0) {
+        out_.line(lights + ".sends = (sl_value[]){" + sends + "};");
+        out_.line(lights + ".num_sends = " + std::to_string(num_sends) + ";");
+    }
+}
+
+// The innermost illuminance around a statement: what lightsource() is about.
+std::string Emitter::lights_around(const Block& b) const {
+    for (const Block* at = &b; at != nullptr; at = flow_.block(*at).parent) {
+        const Stmt* owner = flow_.block(*at).owner;
+        if (owner != nullptr && owner->op == Op::Illuminance) {
+            return "&" + stems_.at(owner);
+        }
+    }
+    return "0";
 }
 
 void Emitter::illuminate(const Stmt& s, const Block& b) {

@@ -38,6 +38,15 @@ void unit_depth(void*, float* near_far) {
     near_far[0] = 0;
     near_far[1] = 1;
 }
+std::uint32_t no_light_message(void*, const sl_light_query*, sl_string, std::int32_t, std::int32_t,
+                               float*) {
+    return 0;
+}
+std::int32_t no_match(void*, sl_string, sl_string) {
+    return 0;
+}
+void no_shadeop(void*, sl_string, std::uint32_t, std::uint32_t, const sl_value*, std::int32_t,
+                const sl_value*, std::int32_t) {}
 std::int32_t zero(void*) {
     return 0;
 }
@@ -59,6 +68,9 @@ sl_services empty_services(rt::StringTable&) {
     s.depth_range = unit_depth;
     s.raylevel = zero;
     s.ray_kind = zero;
+    s.light_message = no_light_message;
+    s.match = no_match;
+    s.shadeop = no_shadeop;
     return s;
 }
 

@@ -23,6 +23,7 @@ bool InterpHost::space(const std::string&, const std::string&, int, Matrix16&) {
 bool InterpHost::message(std::string_view, const std::string&, int, Value&) {
     return false;
 }
+void InterpHost::shadeop(const std::string&, int, std::vector<Value>&, std::size_t) {}
 void InterpHost::print(const std::string&) {}
 void InterpHost::depth_range(double& near_z, double& far_z) {
     near_z = 0;

@@ -37,6 +37,9 @@ public:
     // `function` is the name of the built-in ("surface", "attribute" ...). True if value was set.
     virtual bool message(std::string_view function, const std::string& name, int point,
                          Value& value);
+    // A function of a DSO: "name signature"; values are outputs, to be set, then inputs.
+    virtual void shadeop(const std::string& function, int point, std::vector<Value>& values,
+                         std::size_t num_outputs);
     virtual void print(const std::string& text);
     virtual std::uint32_t seed(int point) { return static_cast<std::uint32_t>(point); }
     virtual void depth_range(double& near_z, double& far_z);
@@ -103,6 +106,7 @@ private:
     bool area(const Stmt& s, const Mask& mask, int point, Value& result);
     Triple3 oriented_normal(int point, const Triple3& p_u, const Triple3& p_v) const;
     bool text(const Stmt& s, int point, Value& result);
+    bool shadeop(const Stmt& s, int point, std::vector<Value>& args);
     void random(int point, bool is_uniform, Value& result);
     void fallback(const Stmt& s, int point, Value& result);
     Triple3 illuminate_sum(const Stmt& s, int point);

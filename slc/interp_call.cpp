@@ -35,7 +35,7 @@ void Interpreter::call_at(const Stmt& s, const Mask& mask, int point) {
         f(args, result);
     } else if (!lighting(s, point, result) && !spaces(s, point, args, result) &&
                !area(s, mask, point, result) && !text(s, point, result) &&
-               !state(s, point, args, result)) {
+               !shadeop(s, point, args) && !state(s, point, args, result)) {
         fallback(s, point, result);
     }
     for (std::size_t i = 0; i < row.args.size(); ++i) {
@@ -204,6 +204,17 @@ bool Interpreter::text(const Stmt& s, int point, Value& result) {
     } else {
         return false;
     }
+    return true;
+}
+
+bool Interpreter::shadeop(const Stmt& s, int point, std::vector<Value>& args) {
+    const BuiltinRow& row = builtin_of(s);
+    if (row.name != "shadeop") {
+        return false;
+    }
+    std::vector<Value> values(args.begin() + 1, args.end());
+    host_.shadeop(args[0].text(), point, values, row.args.size() - 1);
+    std::copy(values.begin(), values.end(), args.begin() + 1);
     return true;
 }
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Colour spaces, sl.md 4.4, and strings, 4.5.
+#include "runtime/base/pattern.h"
 #include "slc/interp_value.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <regex.h>
 
 namespace slc {
 
@@ -142,12 +142,7 @@ Triple3 from_rgb(std::string_view space, const Triple3& c) {
 }
 
 void match(Args a, Value& r) {
-    regex_t regex;
-    r.x[0] = 0;
-    if (regcomp(&regex, a[0].text().c_str(), REG_NOSUB) == 0) {
-        r.x[0] = regexec(&regex, a[1].text().c_str(), 0, nullptr, 0) == 0 ? 1 : 0;
-        regfree(&regex);
-    }
+    r.x[0] = base::Pattern(a[0].text()).matches(a[1].text()) ? 1 : 0;
 }
 
 void put(Value& r, const Triple3& v) {

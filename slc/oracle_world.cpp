@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "slc/oracle_world.h"
 
+#include "runtime/base/pattern.h"
+
+#include <algorithm>
 #include <cmath>
 
 namespace slc {
@@ -131,6 +134,49 @@ std::uint32_t serve_message(void* engine, std::int32_t kind, sl_string name, std
     return set;
 }
 
+std::uint32_t serve_light_message(void* engine, const sl_light_query* query, sl_string name,
+                                  std::int32_t type, std::int32_t array_length, float* value) {
+    return serve_message(engine, SL_MESSAGE_lightsource, name, type, array_length, query->first,
+                         query->mask, value);
+}
+
+// Component k of a value as one lane sees it.
+float component(const sl_value& v, std::size_t k, std::uint32_t lane, std::uint32_t lanes) {
+    const auto* floats = static_cast<const float*>(v.data);
+    return v.varying != 0 ? floats[k * lanes + lane] : floats[k];
+}
+
+std::size_t floats_of(const sl_value& v) {
+    return v.type == SL_TYPE_string
+               ? 0
+               : static_cast<std::size_t>(std::max(v.array_length, 1)) *
+                     static_cast<std::size_t>(num_components(static_cast<Type>(v.type)));
+}
+
+void serve_shadeop(void* engine, sl_string function, std::uint32_t, std::uint32_t mask,
+                   const sl_value* outputs, std::int32_t num_outputs, const sl_value* inputs,
+                   std::int32_t num_inputs) {
+    const std::uint32_t lanes = world_of(engine).lanes();
+    for (std::uint32_t lane = 0; lane < lanes; ++lane) {
+        if ((mask >> lane & 1U) == 0) {
+            continue;
+        }
+        double sum = 0;
+        for (std::int32_t i = 0; i < num_inputs; ++i) {
+            for (std::size_t k = 0; k < floats_of(inputs[i]); ++k) {
+                sum += component(inputs[i], k, lane, lanes);
+            }
+        }
+        for (std::int32_t i = 0; i < num_outputs; ++i) {
+            auto* out = static_cast<float*>(outputs[i].data);
+            for (std::size_t k = 0; k < floats_of(outputs[i]); ++k) {
+                out[outputs[i].varying != 0 ? k * lanes + lane : k] =
+                    static_cast<float>(OracleWorld::shadeop_value(function, sum, i, k));
+            }
+        }
+    }
+}
+
 } // namespace
 
 sl_services OracleWorld::services() {
@@ -161,7 +207,33 @@ sl_services OracleWorld::services() {
     };
     s.raylevel = [](void* engine) -> std::int32_t { return world_of(engine).raylevel(); };
     s.ray_kind = [](void*) -> std::int32_t { return SL_RAY_camera; };
+    s.light_message = serve_light_message;
+    s.match = [](void*, sl_string pattern, sl_string subject) -> std::int32_t {
+        return base::Pattern(pattern).matches(subject) ? 1 : 0;
+    };
+    s.shadeop = serve_shadeop;
     return s;
+}
+
+double OracleWorld::shadeop_value(const std::string& function, double sum, int output,
+                                  std::size_t component) {
+    return 0.25 * sum + output + 0.125 * static_cast<double>(component) +
+           static_cast<double>(function.size());
+}
+
+void OracleWorld::shadeop(const std::string& function, int, std::vector<Value>& values,
+                          std::size_t num_outputs) {
+    double sum = 0;
+    for (std::size_t i = num_outputs; i < values.size(); ++i) {
+        for (const double x : values[i].x) {
+            sum += x;
+        }
+    }
+    for (std::size_t i = 0; i < num_outputs; ++i) {
+        for (std::size_t k = 0; k < values[i].x.size(); ++k) {
+            values[i].x[k] = shadeop_value(function, sum, static_cast<int>(i), k);
+        }
+    }
 }
 
 float OracleWorld::input(std::size_t variable, int component, int point) {

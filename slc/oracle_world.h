@@ -32,6 +32,10 @@ public:
     // alike.
     [[nodiscard]] static float input(std::size_t variable, int component, int point);
 
+    // What the functions of DSOs give here: a formula of all input components.
+    [[nodiscard]] static double shadeop_value(const std::string& function, double sum, int output,
+                                              std::size_t component);
+
     // InterpHost
     int num_lights() override { return 2; }
     bool light(int index, int point, const Triple3& P, const Triple3& axis, double cos_angle,
@@ -42,6 +46,8 @@ public:
                  Value& value) override;
     void print(const std::string& text) override { printed_.push_back(text); }
     void depth_range(double& near_z, double& far_z) override;
+    void shadeop(const std::string& function, int point, std::vector<Value>& values,
+                 std::size_t num_outputs) override;
     int raylevel() override { return 2; }
     std::string shader_name(const std::string& type) override {
         return type.empty() ? "me" : type + "_s";

@@ -2,6 +2,7 @@
 #include "tracer/execution.h"
 
 #include "tracer/lights.h"
+#include "tracer/pattern_cache.h"
 #include "tracer/shader_set.h"
 
 namespace trace {

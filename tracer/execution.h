@@ -26,6 +26,7 @@ struct ShaderEntry;
 class ShaderSet;
 class LightSet;
 class LightRun;
+class PatternCache;
 struct LightList;
 class PixelTrace;
 class ShaderProfile;
@@ -61,13 +62,21 @@ struct ThreadState {
     ~ThreadState();
 
     Counters counters;
+    rt::ShadeBatch displacement;
     rt::ShadeBatch surface;
     rt::ShadeBatch volume;
+    std::unique_ptr<PatternCache> patterns;        // of match()
     std::vector<std::unique_ptr<LightRun>> lights; // by light, made on first use
     std::uint64_t batch_serial = 0;   // grows with every batch: stale light results are told by it
     std::string printed;              // printf of the bucket in work
     PixelTrace* trace = nullptr;      // --trace-pixel: told what happens
     ShaderProfile* profile = nullptr; // --profile-shaders: this thread's rows
+};
+
+// A shader that runs or has run on the points of a batch, and the batch that holds its values.
+struct StageRun {
+    const ShaderEntry* shader = nullptr;
+    rt::ShadeBatch* batch = nullptr;
 };
 
 // Points of one batch that came from rays. All belong to attribute states that shade alike; where a
@@ -76,6 +85,9 @@ struct BatchSubject {
     std::span<const geo::Hit> hits;
     const LightList* lights = nullptr;
     std::uint32_t attributes = geo::no_id; // of the first point
+    geo::Incident incident{};              // the rays, if a shader asks for messages
+    // What messages see; shaders that have not run answer with the values of their calls.
+    StageRun displacement{}, surface{}, atmosphere{};
 };
 
 class Execution {
@@ -93,8 +105,6 @@ public:
     const Execution* asked_by = nullptr; // a light's: the execution that lights its points,
     std::uint32_t asked_first = 0;       // the index there of its first point,
     std::uint32_t asked_mask = 0;        // and the lanes that were asked
-    const Execution* surface = nullptr;  // a volume's: the surface at its far end
-    LightRun* current_light = nullptr;   // lightsource()
     int ray_level = 0;
     int ray_kind = SL_RAY_camera;
     SpaceCache spaces;

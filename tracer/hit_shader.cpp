@@ -161,7 +161,8 @@ void HitShader::shade_batch(const Group& group, std::span<const std::uint32_t> m
     const std::uint64_t shown = shown_variables(group.shading_class);
     gather(c, shown, members);
     ++thread_.batch_serial;
-    const BatchSubject subject{subject_hits_, &c.lights, group.attributes};
+    BatchSubject subject{subject_hits_, &c.lights, group.attributes};
+    subject.surface = {c.surface, &thread_.surface};
     Execution surface(frame_, *c.surface);
     surface.thread = &thread_;
     surface.batch = &thread_.surface;
@@ -281,7 +282,6 @@ void HitShader::run_atmosphere(const ShaderEntry& shader, const Execution& surfa
     execution.thread = &thread_;
     execution.batch = &batch;
     execution.subject = surface.subject;
-    execution.surface = &surface;
     frame_.world->fill(subject_hits_, incident(count),
                        batch.instance().object().needed & geometry_variables, batch.stride(),
                        batch.points(), nullptr, nullptr);

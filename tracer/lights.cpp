@@ -2,9 +2,11 @@
 #include "tracer/lights.h"
 
 #include "runtime/base/ticks.h"
+#include "tracer/messages.h"
 #include "tracer/pixel_trace.h"
 #include "tracer/services.h"
 #include "tracer/shader_set.h"
+#include "tracer/sl_types.h"
 
 #include <algorithm>
 #include <bit>
@@ -78,6 +80,7 @@ void LightRun::attach(Execution& asker, const LightInfo& info) {
     if (is_new) {
         begin();
         known_ = 0;
+        sent_ = false;
     }
     if (!info.is_constant) {
         known_ = 0;
@@ -121,25 +124,70 @@ bool LightRun::wants(sl_string category) {
     return wanted_;
 }
 
-bool LightRun::is_known(std::uint32_t first, std::uint32_t mask, const float* P) const {
-    if ((mask & ~known_) != 0) {
+bool LightRun::is_known(const sl_light_query& query) const {
+    if ((query.mask & ~known_) != 0 || sent_ || query.num_sends > 0 || query.refresh != 0) {
         return false;
     }
     if (info_->is_constant) {
         return true;
     }
-    if (!info_->reusable || first != first_) {
+    if (!info_->reusable || query.first != first_) {
         return false;
     }
-    for (std::uint32_t rest = mask; rest != 0; rest &= rest - 1) {
+    for (std::uint32_t rest = query.mask; rest != 0; rest &= rest - 1) {
         const auto lane = static_cast<std::uint32_t>(std::countr_zero(rest));
         for (std::uint32_t k = 0; k < 3; ++k) {
-            if (P[k * lanes_ + lane] != Ps_[k][lane]) {
+            if (query.P[k * lanes_ + lane] != Ps_[k][lane]) {
                 return false;
             }
         }
     }
     return true;
+}
+
+// "send:light:name": the parameter has this value for one execution.
+void LightRun::send(const sl_light_query& query) {
+    for (std::int32_t i = 0; i + 1 < query.num_sends; i += 2) {
+        const sl_string name = *static_cast<const sl_string*>(query.sends[i].data);
+        const sl_value& value = query.sends[i + 1];
+        const int index = info_->shader->instance->shader().find_param(name);
+        if (index < 0) {
+            continue;
+        }
+        const sl_param& param = info_->shader->object().params[index];
+        if (types_agree(param.type, value.type) && param.array_length == value.array_length) {
+            sent_ = true;
+            send_value(query, index, value);
+        }
+    }
+}
+
+// A uniform parameter takes the value of the first point asked; lanes that are not asked do too.
+void LightRun::send_value(const sl_light_query& query, int index, const sl_value& value) {
+    const auto any = static_cast<std::uint32_t>(std::countr_zero(query.mask));
+    const auto put = [&]<class T>(const T* from, T* each, T* one) {
+        const std::size_t step = value.varying != 0 ? query.lanes : 1;
+        for (std::uint32_t lane = 0; each != nullptr && lane < all_lanes; ++lane) {
+            const std::uint32_t asked = (query.mask >> lane & 1U) != 0 ? lane : any;
+            each[lane] = from[value.varying != 0 ? asked : 0];
+        }
+        if (one != nullptr) {
+            *one = from[value.varying != 0 ? any : 0];
+        }
+        return from + step;
+    };
+    const sl_param& param = info_->shader->object().params[index];
+    if (param.type == SL_TYPE_string) { // arrays of strings: their first element
+        put(static_cast<const sl_string*>(value.data), batch_.param_strings(index),
+            batch_.param_uniform_string(index));
+        return;
+    }
+    const int num_floats = rt::components_of(param.type) * std::max(param.array_length, 1);
+    const auto* from = static_cast<const float*>(value.data);
+    float* const uniform = batch_.param_uniform(index);
+    for (int k = 0; k < num_floats; ++k) {
+        from = put(from, batch_.param_plane(index, k), uniform != nullptr ? uniform + k : nullptr);
+    }
 }
 
 // Lanes that are not asked get the point of one that is: a light may loop until its value
@@ -198,27 +246,32 @@ std::uint32_t LightRun::executed() const {
     return mask;
 }
 
-std::uint32_t LightRun::illuminate(std::uint32_t first, std::uint32_t lanes, std::uint32_t mask,
-                                   const float* P, const float* N) {
-    mask &= (1U << lanes) - 1;
+std::uint32_t LightRun::illuminate(const sl_light_query& query) {
+    const std::uint32_t mask = query.mask & ((1U << query.lanes) - 1);
     if (mask == 0) {
         return 0;
     }
     Counters& counters = asker_->thread->counters;
-    if (is_known(first, mask, P)) {
+    if (is_known(query)) {
         counters.add(Counter::light_reused);
         return mask & executed();
     }
-    first_ = first;
-    lanes_ = lanes;
+    first_ = query.first;
+    lanes_ = query.lanes;
     known_ = info_->is_constant ? ~0U : mask;
-    execution_->asked_first = first;
+    execution_->asked_first = query.first;
     execution_->asked_mask = mask;
     traced_ = clear_ = 0;
-    batch_.restart();
-    fill_points(mask, P, N);
+    if (sent_) {
+        begin();
+        sent_ = false;
+    } else {
+        batch_.restart();
+    }
+    fill_points(mask, query.P, query.N);
     fill_seeds_and_time();
     reset_results();
+    send(query);
     run(static_cast<std::uint32_t>(std::popcount(mask)));
     return mask & executed();
 }
@@ -366,25 +419,44 @@ void darken(sl_light_result& result, std::uint32_t lanes, std::uint32_t shadowed
 
 } // namespace
 
+namespace {
+
+// The batch's N stands for a query without one.
+class Query {
+public:
+    Query(const Execution& execution, const sl_light_query& query) : query_(query) {
+        if (query.N != nullptr || execution.batch == nullptr || !execution.batch->has(SL_VAR_N)) {
+            return;
+        }
+        for (std::uint32_t k = 0; k < 3; ++k) {
+            const float* plane = execution.batch->plane(SL_VAR_N, static_cast<int>(k));
+            std::copy_n(plane + query.first, query.lanes, batch_N_ + k * query.lanes);
+        }
+        query_.N = batch_N_;
+    }
+    Query(const Query&) = delete;
+    Query& operator=(const Query&) = delete;
+    [[nodiscard]] const sl_light_query& get() const { return query_; }
+
+private:
+    sl_light_query query_;
+    float batch_N_[3 * SL_LANES_MAX] = {};
+};
+
+rib::LightId asked_light(const Execution& execution, const sl_light_query& query) {
+    return execution.subject->lights->directional[static_cast<std::size_t>(query.index)];
+}
+
+} // namespace
+
 std::uint32_t run_light(Execution& execution, const sl_light_query& query,
                         sl_light_result& result) {
-    const rib::LightId id =
-        execution.subject->lights->directional[static_cast<std::size_t>(query.index)];
+    const rib::LightId id = asked_light(execution, query);
     LightRun& run = attached(execution, id);
     if (!run.wants(query.category)) {
         return 0;
     }
-    const float* N = query.N;
-    float batch_N[3 * SL_LANES_MAX] = {};
-    if (N == nullptr && execution.batch != nullptr && execution.batch->has(SL_VAR_N)) {
-        for (std::uint32_t k = 0; k < 3; ++k) {
-            const float* plane = execution.batch->plane(SL_VAR_N, static_cast<int>(k));
-            std::copy_n(plane + query.first, query.lanes, batch_N + k * query.lanes);
-        }
-        N = batch_N;
-    }
-    const std::uint32_t lit = run.illuminate(query.first, query.lanes, query.mask, query.P, N);
-    execution.current_light = &run;
+    const std::uint32_t lit = run.illuminate(Query(execution, query).get());
     std::uint32_t reached = 0, shadowed = 0;
     if (lit != 0) {
         copy_result(run, query.lanes, result);
@@ -402,6 +474,21 @@ std::uint32_t run_light(Execution& execution, const sl_light_query& query,
     return reached;
 }
 
+std::uint32_t answer_light_message(Execution& execution, const sl_light_query& query,
+                                   sl_string name, std::int32_t type, std::int32_t array_length,
+                                   float* value) {
+    LightRun& run = attached(execution, asked_light(execution, query));
+    if (name == nullptr) {
+        const sl_string text = execution.frame.strings.intern(run.info().shader->name);
+        std::fill_n(reinterpret_cast<sl_string*>(value), query.lanes, text);
+        return query.mask;
+    }
+    run.illuminate(Query(execution, query).get());
+    return param_of_batch({SL_MESSAGE_lightsource, name, type, array_length, query.first,
+                           query.mask, value, query.lanes},
+                          *run.info().shader, run.batch(), 0);
+}
+
 void run_ambient(Execution& execution, std::uint32_t first, std::uint32_t mask, const float* P,
                  float* C) {
     const std::uint32_t lanes = execution.lanes();
@@ -412,7 +499,12 @@ void run_ambient(Execution& execution, std::uint32_t first, std::uint32_t mask, 
     }
     for (const rib::LightId id : execution.subject->lights->ambient) {
         LightRun& run = attached(execution, id);
-        run.illuminate(first, lanes, mask, P, nullptr);
+        sl_light_query query = {};
+        query.first = first;
+        query.lanes = lanes;
+        query.mask = mask;
+        query.P = P;
+        run.illuminate(query);
         if (execution.thread->trace != nullptr) {
             execution.thread->trace->ambient(id, run.batch(), first, mask);
         }

@@ -60,11 +60,10 @@ class LightRun {
 public:
     // Prepares for a batch of `asker`; what was found for other batches is forgotten.
     void attach(Execution& asker, const LightInfo& info);
-    // Runs the light for the points of a packet (P, N: planes of `lanes`; N may be null) unless the
-    // last run was for them. Returns the lanes of `mask` whose illuminate or solar was executed;
-    // ambient lights: all of `mask`.
-    std::uint32_t illuminate(std::uint32_t first, std::uint32_t lanes, std::uint32_t mask,
-                             const float* P, const float* N);
+    // Runs the light for the points of a packet (query.N may be null) unless the last run was for
+    // them. Returns the lanes of query.mask whose illuminate or solar was executed; ambient lights:
+    // all of them.
+    std::uint32_t illuminate(const sl_light_query& query);
     // Lanes of `mask` from which nothing opaque hides the light.
     std::uint32_t unshadowed(std::uint32_t mask);
     [[nodiscard]] bool wants(sl_string category);
@@ -79,9 +78,11 @@ private:
     void run(std::uint32_t num_points);
     void fill_frame(const Space& space);
     void fill_points(std::uint32_t mask, const float* P, const float* N);
+    void send(const sl_light_query& query);
+    void send_value(const sl_light_query& query, int index, const sl_value& value);
     void fill_seeds_and_time();
     void reset_results();
-    [[nodiscard]] bool is_known(std::uint32_t first, std::uint32_t mask, const float* P) const;
+    [[nodiscard]] bool is_known(const sl_light_query& query) const;
     [[nodiscard]] std::uint32_t executed() const;
     [[nodiscard]] base::V3f shadow_origin(std::uint32_t lane, const base::V3f& to_light) const;
 
@@ -93,6 +94,7 @@ private:
     std::uint64_t serial_ = 0;
     std::uint32_t first_ = 0, lanes_ = 0;
     std::uint32_t known_ = 0; // lanes the batch holds results for
+    bool sent_ = false;       // the batch's parameters hold what an illuminance sent
     std::uint32_t traced_ = 0,
                   clear_ = 0; // lanes whose shadow ray is known, and those it left open
     float Ps_[3][SL_LANES_MAX] = {};
@@ -103,6 +105,11 @@ private:
 // The service `light`: run, negate, test cone and category, shadow. Returns the lanes the light
 // reaches; a lane in shadow is reached with Cl 0 (sl.md 5.6: Cl times visibility).
 std::uint32_t run_light(Execution& execution, const sl_light_query& query, sl_light_result& result);
+
+// The service `light_message`. The light is run again if it has lit other points since.
+std::uint32_t answer_light_message(Execution& execution, const sl_light_query& query,
+                                   sl_string name, std::int32_t type, std::int32_t array_length,
+                                   float* value);
 
 // The service `ambient`: sum of Cl over the ambient lights, 3 planes.
 void run_ambient(Execution& execution, std::uint32_t first, std::uint32_t mask, const float* P,

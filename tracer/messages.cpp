@@ -2,7 +2,6 @@
 #include "tracer/messages.h"
 
 #include "tracer/execution.h"
-#include "tracer/lights.h"
 #include "tracer/shader_set.h"
 #include "tracer/sl_types.h"
 #include "tracer/state_queries.h"
@@ -14,33 +13,35 @@ namespace trace {
 
 namespace {
 
+std::uint32_t num_elements(const MessageQuery& query) {
+    return static_cast<std::uint32_t>(std::max(query.array_length, 1));
+}
+
 std::uint32_t num_planes(const MessageQuery& query) {
-    return static_cast<std::uint32_t>(rt::components_of(query.type) *
-                                      std::max(query.array_length, 1));
+    return static_cast<std::uint32_t>(rt::components_of(query.type)) * num_elements(query);
 }
 
-template <class Body> void for_lanes(std::uint32_t mask, const Body& body) {
-    for (std::uint32_t rest = mask; rest != 0; rest &= rest - 1) {
-        body(static_cast<std::uint32_t>(std::countr_zero(rest)));
-    }
-}
-
-// Copies from planes of `stride`, lane 0 at `at`; stride 0: one value per component for all lanes.
-void copy_planes(const Execution& execution, const MessageQuery& query, const float* from,
-                 std::uint32_t stride, std::uint32_t at) {
-    const std::uint32_t lanes = execution.lanes();
+// Plane k of the answer from planes of `stride`, lane 0 at `at`; stride 0: one value per plane for
+// all lanes.
+template <class T>
+void copy_planes(const MessageQuery& query, T* out, const T* from, std::uint32_t stride,
+                 std::uint32_t at) {
     for (std::uint32_t k = 0; k < num_planes(query); ++k) {
-        for_lanes(query.mask, [&](std::uint32_t lane) {
-            query.value[k * lanes + lane] = stride == 0 ? from[k] : from[k * stride + at + lane];
-        });
+        for (std::uint32_t rest = query.mask; rest != 0; rest &= rest - 1) {
+            const auto lane = static_cast<std::uint32_t>(std::countr_zero(rest));
+            out[k * query.lanes + lane] = stride == 0 ? from[k] : from[k * stride + at + lane];
+        }
     }
 }
 
-void copy_strings(const MessageQuery& query, const sl_string* from, bool varying,
+void copy_floats(const MessageQuery& query, const float* from, std::uint32_t stride,
+                 std::uint32_t at) {
+    copy_planes(query, query.value, from, stride, at);
+}
+
+void copy_strings(const MessageQuery& query, const sl_string* from, std::uint32_t stride,
                   std::uint32_t at) {
-    auto* out = reinterpret_cast<sl_string*>(query.value);
-    for_lanes(query.mask,
-              [&](std::uint32_t lane) { out[lane] = varying ? from[at + lane] : from[0]; });
+    copy_planes(query, reinterpret_cast<sl_string*>(query.value), from, stride, at);
 }
 
 int matching_param(const ShaderEntry& shader, const MessageQuery& query) {
@@ -49,44 +50,21 @@ int matching_param(const ShaderEntry& shader, const MessageQuery& query) {
         return -1;
     }
     const sl_param& param = shader.object().params[index];
-    // Arrays of strings have no form in the service.
-    const bool fits = types_agree(param.type, query.type) &&
-                      param.array_length == query.array_length &&
-                      !(param.type == SL_TYPE_string && param.array_length > 0);
+    const bool fits =
+        types_agree(param.type, query.type) && param.array_length == query.array_length;
     return fits ? index : -1;
 }
 
-// A parameter as a batch holds it now: output parameters have their last value.
-std::uint32_t param_of_batch(const Execution& execution, const MessageQuery& query,
-                             const ShaderEntry& shader, rt::ShadeBatch& batch, std::uint32_t at) {
-    const int index = matching_param(shader, query);
-    if (index < 0) {
-        return 0;
-    }
-    if (query.type == SL_TYPE_string) {
-        const sl_string* varying = batch.param_strings(index);
-        copy_strings(query, varying != nullptr ? varying : batch.param_uniform_string(index),
-                     varying != nullptr, at);
-    } else if (const float* planes = batch.param_plane(index)) {
-        copy_planes(execution, query, planes, batch.stride(), at);
-    } else {
-        copy_planes(execution, query, batch.param_uniform(index), 0, 0);
-    }
-    return query.mask;
-}
-
 // A parameter as it was bound: the shader has not run, or runs elsewhere.
-std::uint32_t param_of_instance(const Execution& execution, const MessageQuery& query,
-                                const ShaderEntry* shader) {
+std::uint32_t param_of_instance(const MessageQuery& query, const ShaderEntry* shader) {
     const int index = shader != nullptr ? matching_param(*shader, query) : -1;
-    if (index < 0) {
+    if (index < 0 || query.mask == 0) {
         return 0;
     }
     if (query.type == SL_TYPE_string) {
-        const sl_string text = shader->instance->uniform_string(index);
-        copy_strings(query, &text, false, 0);
+        copy_strings(query, shader->instance->uniform_strings(index), 0, 0);
     } else {
-        copy_planes(execution, query, shader->instance->uniform_floats(index), 0, 0);
+        copy_floats(query, shader->instance->uniform_floats(index), 0, 0);
     }
     return query.mask;
 }
@@ -104,25 +82,69 @@ const ShaderEntry* bound_shader(const Execution& execution, rib::ShaderId rib::A
     return attributes != nullptr && shaders != nullptr ? shaders->get(attributes->*which) : nullptr;
 }
 
-std::uint32_t from_light(const Execution& execution, const MessageQuery& query) {
-    LightRun* light = execution.current_light;
-    return light == nullptr
-               ? 0
-               : param_of_batch(execution, query, *light->info().shader, light->batch(), 0);
+// Index of lane 0 in the batches of the subject: a light's lanes are those of the packet it lights.
+std::uint32_t subject_index(const Execution& execution, const MessageQuery& query) {
+    return query.first + (execution.asked_by != nullptr ? execution.asked_first : 0);
 }
 
-// Lights see the surface they light, volumes the surface at their far end.
-std::uint32_t from_surface(const Execution& execution, const MessageQuery& query) {
-    const Execution* surface =
-        execution.asked_by != nullptr ? execution.asked_by : execution.surface;
-    if (surface != nullptr && surface->batch != nullptr &&
-        surface->running.object().type == SL_SHADER_surface) {
-        // A light's lanes are those of the packet it lights; a volume's batch is the surface's.
-        const std::uint32_t at =
-            query.first + (execution.asked_by != nullptr ? execution.asked_first : 0);
-        return param_of_batch(execution, query, surface->running, *surface->batch, at);
+// A shader that shares the point: with the values it has now if it runs or has run.
+std::uint32_t from_stage(const Execution& execution, const MessageQuery& query,
+                         StageRun BatchSubject::*stage, rib::ShaderId rib::Attributes::*which) {
+    const StageRun run = execution.subject != nullptr ? execution.subject->*stage : StageRun{};
+    return run.batch != nullptr
+               ? param_of_batch(query, *run.shader, *run.batch, subject_index(execution, query))
+               : param_of_instance(query, bound_shader(execution, which));
+}
+
+// Lanes whose ray comes from outside the surface; all of them where there is no ray.
+std::uint32_t lanes_outside(const Execution& execution, const MessageQuery& query) {
+    const BatchSubject& subject = *execution.subject;
+    const std::size_t at = subject_index(execution, query);
+    if (subject.incident.ox.empty() || at >= subject.hits.size()) {
+        return query.mask;
     }
-    return param_of_instance(execution, query, bound_shader(execution, &rib::Attributes::surface));
+    const std::size_t n = std::min<std::size_t>(query.lanes, subject.hits.size() - at);
+    const auto part = [&](std::span<const float> values) {
+        return values.empty() ? values : values.subspan(at, n);
+    };
+    const geo::Incident& all = subject.incident;
+    const geo::Incident incident{part(all.ox), part(all.oy), part(all.oz),       part(all.dx),
+                                 part(all.dy), part(all.dz), part(all.footprint)};
+    alignas(64) float I[3 * SL_LANES_MAX] = {}, Ng[3 * SL_LANES_MAX] = {};
+    sl_points points = {};
+    points.var[SL_VAR_I] = I;
+    points.var[SL_VAR_Ng] = Ng;
+    execution.frame.world->fill(subject.hits.subspan(at, n), incident,
+                                1ULL << SL_VAR_I | 1ULL << SL_VAR_Ng, SL_LANES_MAX, points, nullptr,
+                                nullptr);
+    std::uint32_t outside = 0;
+    for (std::uint32_t lane = 0; lane < n; ++lane) {
+        float along = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            along += I[k * SL_LANES_MAX + lane] * Ng[k * SL_LANES_MAX + lane];
+        }
+        outside |= along <= 0 ? 1U << lane : 0;
+    }
+    return query.mask & outside;
+}
+
+// The volumes of the two sides: Exterior outside, or the Atmosphere where there is none; Interior
+// inside.
+std::uint32_t from_volume(const Execution& execution, const MessageQuery& query) {
+    if (execution.subject == nullptr) {
+        return 0;
+    }
+    const ShaderEntry* exterior = bound_shader(execution, &rib::Attributes::exterior);
+    if (exterior == nullptr) {
+        exterior = bound_shader(execution, &rib::Attributes::atmosphere);
+    }
+    const ShaderEntry* interior = bound_shader(execution, &rib::Attributes::interior);
+    const std::uint32_t outside = lanes_outside(execution, query);
+    const bool is_incident = query.kind == SL_MESSAGE_incident;
+    MessageQuery of_exterior = query, of_interior = query;
+    of_exterior.mask = is_incident ? outside : query.mask & ~outside;
+    of_interior.mask = query.mask & ~of_exterior.mask;
+    return param_of_instance(of_exterior, exterior) | param_of_instance(of_interior, interior);
 }
 
 std::uint32_t from_state(const Execution& execution, const MessageQuery& query,
@@ -130,15 +152,20 @@ std::uint32_t from_state(const Execution& execution, const MessageQuery& query,
     if (!state || !types_agree(state->type, query.type)) {
         return 0;
     }
-    if (query.type == SL_TYPE_string) {
-        const sl_string text = execution.frame.strings.intern(state->text);
-        copy_strings(query, &text, false, 0);
-        return query.mask;
-    }
-    if (state->floats.size() != num_planes(query)) {
+    const std::size_t given =
+        query.type == SL_TYPE_string ? state->texts.size() : state->floats.size();
+    if (given != num_planes(query)) {
         return 0;
     }
-    copy_planes(execution, query, state->floats.data(), 0, 0);
+    if (query.type == SL_TYPE_string) {
+        std::vector<sl_string> texts;
+        for (const std::string& text : state->texts) {
+            texts.push_back(execution.frame.strings.intern(text));
+        }
+        copy_strings(query, texts.data(), 0, 0);
+    } else {
+        copy_floats(query, state->floats.data(), 0, 0);
+    }
     return query.mask;
 }
 
@@ -160,15 +187,37 @@ std::uint32_t from_attributes(const Execution& execution, const MessageQuery& qu
 
 } // namespace
 
+std::uint32_t param_of_batch(const MessageQuery& query, const ShaderEntry& shader,
+                             rt::ShadeBatch& batch, std::uint32_t at) {
+    const int index = matching_param(shader, query);
+    if (index < 0) {
+        return 0;
+    }
+    if (query.type == SL_TYPE_string) {
+        const sl_string* varying = batch.param_strings(index);
+        copy_strings(query, varying != nullptr ? varying : batch.param_uniform_string(index),
+                     varying != nullptr ? batch.stride() : 0, at);
+    } else if (const float* planes = batch.param_plane(index)) {
+        copy_floats(query, planes, batch.stride(), at);
+    } else {
+        copy_floats(query, batch.param_uniform(index), 0, 0);
+    }
+    return query.mask;
+}
+
 std::uint32_t answer_message(const Execution& execution, const MessageQuery& query) {
     switch (query.kind) {
-    case SL_MESSAGE_lightsource:
-        return from_light(execution, query);
     case SL_MESSAGE_surface:
-        return from_surface(execution, query);
+        return from_stage(execution, query, &BatchSubject::surface, &rib::Attributes::surface);
+    case SL_MESSAGE_displacement:
+        return from_stage(execution, query, &BatchSubject::displacement,
+                          &rib::Attributes::displacement);
     case SL_MESSAGE_atmosphere:
-        return param_of_instance(execution, query,
-                                 bound_shader(execution, &rib::Attributes::atmosphere));
+        return from_stage(execution, query, &BatchSubject::atmosphere,
+                          &rib::Attributes::atmosphere);
+    case SL_MESSAGE_incident:
+    case SL_MESSAGE_opposite:
+        return from_volume(execution, query);
     case SL_MESSAGE_attribute:
         return from_attributes(execution, query);
     case SL_MESSAGE_option:
@@ -177,7 +226,7 @@ std::uint32_t answer_message(const Execution& execution, const MessageQuery& que
     case SL_MESSAGE_rendererinfo:
         return from_state(execution, query, query_renderer(query.name));
     default:
-        return 0; // displacement, incident, opposite: such shaders do not run yet
+        return 0; // lightsource() has a service of its own
     }
 }
 
@@ -193,10 +242,6 @@ std::string bound_shader_name(const Execution& execution, std::string_view type)
         {"interior", &rib::Attributes::interior},
         {"exterior", &rib::Attributes::exterior},
     };
-    if (type == "lightsource") {
-        return execution.current_light != nullptr ? execution.current_light->info().shader->name
-                                                  : "";
-    }
     const rib::Attributes* attributes = attributes_of(execution);
     const auto row = std::find_if(std::begin(rows), std::end(rows),
                                   [&](const Row& r) { return r.type == type; });

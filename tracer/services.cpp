@@ -6,6 +6,7 @@
 #include "tracer/execution.h"
 #include "tracer/lights.h"
 #include "tracer/messages.h"
+#include "tracer/pattern_cache.h"
 #include "tracer/pixel_trace.h"
 #include "tracer/shader_profile.h"
 #include "tracer/shader_set.h"
@@ -125,7 +126,28 @@ void ambient(void* engine, uint32_t first, uint32_t mask, const float* P, float*
 
 uint32_t message(void* engine, int32_t kind, sl_string name, int32_t type, int32_t array_length,
                  uint32_t first, uint32_t mask, float* value) {
-    return answer_message(of(engine), {kind, name, type, array_length, first, mask, value});
+    const Execution& execution = of(engine);
+    return answer_message(execution,
+                          {kind, name, type, array_length, first, mask, value, execution.lanes()});
+}
+
+uint32_t light_message(void* engine, const sl_light_query* query, sl_string name, int32_t type,
+                       int32_t array_length, float* value) {
+    return query->index < light_count(engine)
+               ? answer_light_message(of(engine), *query, name, type, array_length, value)
+               : 0;
+}
+
+int32_t match(void* engine, sl_string pattern, sl_string subject) {
+    return match_pattern(of(engine), pattern, subject) ? 1 : 0;
+}
+
+void shadeop(void* engine, sl_string function, uint32_t /*first*/, uint32_t /*mask*/,
+             const sl_value* /*outputs*/, int32_t /*num_outputs*/, const sl_value* /*inputs*/,
+             int32_t /*num_inputs*/) {
+    report_shader(of(engine), base::Severity::Warning, 0,
+                  "function \"" + std::string(function) +
+                      "\" of a DSO is not at hand; its results stay as they are");
 }
 
 // A light runs for whole packets, of which some lanes only were asked about: those print.

@@ -20,7 +20,7 @@ StateValue color(const std::array<float, 3>& c) {
     return {SL_TYPE_color, {c.begin(), c.end()}, {}};
 }
 StateValue text(std::string value) {
-    return {SL_TYPE_string, {}, std::move(value)};
+    return {SL_TYPE_string, {}, {std::move(value)}};
 }
 
 // Attribute and Option "group" "name" under their key "group:name".
@@ -34,9 +34,7 @@ std::optional<StateValue> user_value(const rib::Param* param) {
     if (param->decl.type == rib::ParamType::Integer) {
         value.floats.assign(param->ints.begin(), param->ints.end());
     }
-    if (value.type == SL_TYPE_string && !param->strings.empty()) {
-        value.text = param->strings.front();
-    }
+    value.texts = param->strings;
     return value;
 }
 

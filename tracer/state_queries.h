@@ -17,7 +17,7 @@ namespace trace {
 struct StateValue {
     sl_type type = SL_TYPE_float;
     std::vector<float> floats;
-    std::string text; // type string
+    std::vector<std::string> texts; // type string
 };
 
 [[nodiscard]] std::optional<StateValue> query_attribute(const rib::Attributes& attributes,

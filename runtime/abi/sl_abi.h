@@ -83,6 +83,17 @@ enum {
     SL_MESSAGE_rendererinfo
 };
 
+/* A typed reference to a value of a running shader, for printf, options, outputs of any type and
+ * shadeops. data: array_length (or one) consecutive values: one per component (strings: one
+ * pointer) or, with `varying`, one plane of a packet's lanes per component (strings: one pointer
+ * per lane). */
+typedef struct sl_value {
+    int32_t type; /* sl_type */
+    int32_t varying;
+    int32_t array_length; /* 0: not an array */
+    void* data;
+} sl_value;
+
 /* One light asked about the points of one packet. */
 typedef struct sl_light_query {
     int32_t index;  /* 0 .. light_count()-1 */
@@ -95,6 +106,10 @@ typedef struct sl_light_query {
         axis; /* 3 planes, or NULL: all directions. Lanes outside the cone are not lit ... */
     const float* cosangle; /* ... 1 plane: cos of the half angle */
     sl_string category;    /* "" = all lights */
+    int32_t sample;        /* samples of this light the loop has had already (area lights) */
+    int32_t refresh;       /* non-zero: run the light, whatever is known ("lightcache" "refresh") */
+    int32_t num_sends;     /* values the light's parameters have in this execution ... */
+    const sl_value* sends; /* ... as pairs: name (uniform string), value ("send:light:name") */
 } sl_light_query;
 
 /* What arrives there. The engine runs the light, applies shadows, negates L. */

@@ -42,20 +42,13 @@ static sli reached(const sl_light_loop* loop, sli lit) {
 int sl_lights_next(const sl_call* call, sl_light_loop* loop, sli* lit) {
     while (loop->index < loop->count && sl_any(loop->live)) {
         sl_light_result result = {0};
-        const sl_light_query query = {
-            .index = loop->index,
-            .first = call->first,
-            .lanes = SL_LANES,
-            .mask = sl_bits(loop->live),
-            .P = (const float*)&loop->P,
-            .N = 0,
-            .axis = loop->has_cone ? (const float*)&loop->axis : 0,
-            .cosangle = loop->has_cone ? (const float*)&loop->cosangle : 0,
-            .category = loop->category,
-        };
+        const sl_light_query query =
+            sl_lights_query(call, loop, loop->index, loop->sample, loop->live);
+        loop->at_index = loop->index;
+        loop->at_sample = loop->sample;
         const uint32_t bits = call->services->light(call->engine, &query, &result);
-        if (!result.more)
-            loop->index++;
+        loop->index += result.more ? 0 : 1;
+        loop->sample = result.more ? loop->sample + 1 : 0;
         take_result(loop, &result);
         *lit = reached(loop, loop->live & sl_mask(bits));
         if (sl_any(*lit))

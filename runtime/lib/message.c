@@ -19,12 +19,25 @@ static int elements_of(const sl_value* value) {
  * --------------------------------------------------------------------------------------------------------
  */
 
+/* Questions about a light go with what its loop asked. */
+static uint32_t post(const sl_call* call, uint32_t mask, int kind, sl_string name,
+                     const sl_value* out, float* planes) {
+    if (kind != SL_MESSAGE_lightsource)
+        return call->services->message(call->engine, kind, name, out->type, out->array_length,
+                                       call->first, mask, planes);
+    const sl_light_loop* loop = call->lights;
+    if (!loop)
+        return 0;
+    const sl_light_query query =
+        sl_lights_query(call, loop, loop->at_index, loop->at_sample, sl_mask(mask));
+    return call->services->light_message(call->engine, &query, name, out->type, out->array_length,
+                                         planes);
+}
+
 /* A varying variable is planes already. */
 static uint32_t ask_lanes(const sl_call* call, uint32_t mask, int kind, sl_string name,
                           const sl_value* out) {
-    return call->services->message(call->engine, kind, name, out->type, out->array_length,
-                                   call->first, mask, (float*)out->data) &
-           mask;
+    return post(call, mask, kind, name, out, (float*)out->data) & mask;
 }
 
 /* --- uniform variables: asked for one lane, then that lane is taken
@@ -53,9 +66,7 @@ static int ask_one(const sl_call* call, int lane, int kind, sl_string name, cons
         return 0;
     memset(planes, 0, size);
     const uint32_t bit = 1u << lane;
-    const int set = (call->services->message(call->engine, kind, name, out->type, out->array_length,
-                                             call->first, bit, planes) &
-                     bit) != 0;
+    const int set = (post(call, bit, kind, name, out, planes) & bit) != 0;
     if (set && is_string)
         take_string_lane(out, planes, lane);
     else if (set)
@@ -172,6 +183,20 @@ slf slv_rayinfo(const sl_call* call, sli mask, sl_string key, const sl_value* ou
 
 /* --- strings spread to lanes
  * ------------------------------------------------------------------------------------------ */
+
+static sl_string light_name(const sl_call* call) {
+    const sl_value out = {SL_TYPE_string, 0, 0, 0};
+    sl_string names[SL_LANES] = {0};
+    const uint32_t bit = 1u << sl_first_lane(call->live);
+    const int known = post(call, bit, SL_MESSAGE_lightsource, 0, &out, (float*)names) != 0;
+    return known ? names[sl_first_lane(call->live)] : call->services->intern(call->engine, "");
+}
+
+/* shadername(type) */
+static sl_string name_of(const sl_call* call, sl_string type) {
+    return type && !strcmp(type, "lightsource") ? light_name(call)
+                                                : call->services->shader_name(call->engine, type);
+}
 
 static sl_string slu_of_string_(sl_string s) {
     return s;

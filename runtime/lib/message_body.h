@@ -34,7 +34,7 @@ S FN(shadername)(CALL) {
     return FN(of_string_)(call->services->shader_name(call->engine, NULL));
 }
 S FN(shadername_of)(CALL, sl_string type) {
-    return FN(of_string_)(call->services->shader_name(call->engine, type));
+    return FN(of_string_)(name_of(call, type));
 }
 
 F FN(raylevel)(CALL) {

@@ -105,7 +105,7 @@ V FN(ctransform_from_to)(sl_string from, sl_string to, V c) OUT(ctransform_from_
 S FN(concat)(CALL, const sl_string* parts, int n) OUT(concat);
 void FN(printf)(CALL, sl_string format, const sl_value* values, int n) OUT(printf);
 S FN(format)(CALL, sl_string format, const sl_value* values, int n) OUT(format);
-F FN(match)(sl_string pattern, sl_string subject) OUT(match);
+F FN(match)(CALL, sl_string pattern, sl_string subject) OUT(match);
 
 /* lighting; the slu_ forms answer for the first live lane */
 V FN(ambient)(CALL) OUT(ambient);
@@ -207,3 +207,28 @@ F FN(message_option)(CALL, sl_string name, const sl_value* out) OUT(message_opti
 F FN(message_rendererinfo)(CALL, sl_string name, const sl_value* out) OUT(message_rendererinfo);
 S FN(shadername)(CALL) OUT(shadername);
 S FN(shadername_of)(CALL, sl_string type) OUT(shadername_of);
+
+/* functions of DSOs: result and outputs, then inputs */
+void FN(shadeop_0)(CALL, sl_string function, const sl_value* values, int n) OUT(shadeop_0);
+void FN(shadeop_1)(CALL, sl_string function, const sl_value* a, const sl_value* values, int n)
+    OUT(shadeop_1);
+void FN(shadeop_2)(CALL, sl_string function, const sl_value* a, const sl_value* b,
+                   const sl_value* values, int n) OUT(shadeop_2);
+void FN(shadeop_3)(CALL, sl_string function, const sl_value* a, const sl_value* b,
+                   const sl_value* c, const sl_value* values, int n) OUT(shadeop_3);
+void FN(shadeop_4)(CALL, sl_string function, const sl_value* a, const sl_value* b,
+                   const sl_value* c, const sl_value* d, const sl_value* values, int n)
+    OUT(shadeop_4);
+void FN(shadeop_5)(CALL, sl_string function, const sl_value* a, const sl_value* b,
+                   const sl_value* c, const sl_value* d, const sl_value* e, const sl_value* values,
+                   int n) OUT(shadeop_5);
+void FN(shadeop_6)(CALL, sl_string function, const sl_value* a, const sl_value* b,
+                   const sl_value* c, const sl_value* d, const sl_value* e, const sl_value* f,
+                   const sl_value* values, int n) OUT(shadeop_6);
+void FN(shadeop_7)(CALL, sl_string function, const sl_value* a, const sl_value* b,
+                   const sl_value* c, const sl_value* d, const sl_value* e, const sl_value* f,
+                   const sl_value* g, const sl_value* values, int n) OUT(shadeop_7);
+void FN(shadeop_8)(CALL, sl_string function, const sl_value* a, const sl_value* b,
+                   const sl_value* c, const sl_value* d, const sl_value* e, const sl_value* f,
+                   const sl_value* g, const sl_value* h, const sl_value* values, int n)
+    OUT(shadeop_8);

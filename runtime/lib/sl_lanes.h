@@ -42,16 +42,6 @@ typedef struct sls {
     sl_string s[SL_LANES];
 } sls;
 
-/* A typed reference, for printf, format, options and X outputs. data: array_length (or one)
- * consecutive values of the type above: float, slu3, slum, sl_string, or with `varying` slf, slv,
- * slm, sls. */
-typedef struct sl_value {
-    int32_t type; /* sl_type */
-    int32_t varying;
-    int32_t array_length; /* 0: not an array */
-    void* data;
-} sl_value;
-
 /* --- conversions
  * -------------------------------------------------------------------------------------------------
  */

@@ -19,9 +19,14 @@ typedef struct sl_light_loop {
     sli live;     /* lanes still in the loop */
     sl_string category;
     int32_t has_cone;
-    int32_t index; /* light to ask next */
-    int32_t count; /* lights of the batch */
-    /* the sample at hand */
+    int32_t index;     /* light to ask next */
+    int32_t count;     /* lights of the batch */
+    int32_t sample;    /* of that light to ask next */
+    int32_t refresh;   /* "lightcache" "refresh" */
+    int32_t num_sends; /* "send:light:name": pairs of name and value */
+    const sl_value* sends;
+    /* the sample at hand, and what was asked to get it */
+    int32_t at_index, at_sample;
     slv L; /* from P towards the light */
     slv Cl, Ol;
     slf nondiffuse, nonspecular; /* the light's __nondiffuse and __nonspecular */
@@ -31,6 +36,26 @@ typedef struct sl_light_loop {
  */
 int sl_lights_next(const sl_call* call, sl_light_loop* loop, sli* lit) SL_SYMBOL(sl_lights_next);
 
+/* What is asked about light `index`. */
+SL_INLINE sl_light_query sl_lights_query(const sl_call* call, const sl_light_loop* loop,
+                                         int32_t index, int32_t sample, sli mask) {
+    return (sl_light_query){
+        .index = index,
+        .first = call->first,
+        .lanes = SL_LANES,
+        .mask = sl_bits(mask),
+        .P = (const float*)&loop->P,
+        .N = 0,
+        .axis = loop->has_cone ? (const float*)&loop->axis : 0,
+        .cosangle = loop->has_cone ? (const float*)&loop->cosangle : 0,
+        .category = loop->category,
+        .sample = sample,
+        .refresh = loop->refresh,
+        .num_sends = loop->num_sends,
+        .sends = loop->sends,
+    };
+}
+
 SL_INLINE void sl_lights_begin(const sl_call* call, sl_light_loop* loop, sli mask, slv P,
                                sl_string category) {
     loop->P = P;
@@ -39,7 +64,8 @@ SL_INLINE void sl_lights_begin(const sl_call* call, sl_light_loop* loop, sli mas
     loop->live = mask;
     loop->category = category;
     loop->has_cone = 0;
-    loop->index = 0;
+    loop->index = loop->sample = loop->refresh = loop->num_sends = 0;
+    loop->sends = 0;
     loop->count = call->services->light_count(call->engine);
 }
 

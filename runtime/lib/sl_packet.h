@@ -22,6 +22,7 @@ typedef struct sl_call {
     uint32_t count; /* lanes that are real points */
     sli live;       /* the same as a mask */
     sl_counters own_counters;
+    const struct sl_light_loop* lights; /* lightsource(): the illuminance loop around the call */
 } sl_call;
 
 SL_INLINE void sl_call_begin(sl_call* call, const sl_batch* batch, uint32_t first, uint32_t count) {
@@ -34,6 +35,7 @@ SL_INLINE void sl_call_begin(sl_call* call, const sl_batch* batch, uint32_t firs
     call->own_counters.random_lanes = (sli){0};
     call->own_counters.random_uniform = 0;
     call->counters = &call->own_counters;
+    call->lights = 0;
 }
 
 /* For parameter defaults: only slu_ functions may be called. */
@@ -47,6 +49,7 @@ SL_INLINE void sl_call_begin_init(sl_call* call, const sl_init* init) {
     call->own_counters.random_lanes = (sli){0};
     call->own_counters.random_uniform = 0;
     call->counters = &call->own_counters;
+    call->lights = 0;
 }
 
 /* --- uniform to lanes

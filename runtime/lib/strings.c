@@ -6,7 +6,6 @@
  */
 #include "body.h"
 
-#include <regex.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -210,16 +209,12 @@ sls slv_concat(const sl_call* call, sli mask, const sl_string* parts, int n) {
     return slv_spread_s(slu_concat(call, parts, n));
 }
 
-/* A pattern that is no regular expression matches nothing. */
-float slu_match(sl_string pattern, sl_string subject) {
-    regex_t regex;
-    if (!pattern || !subject || regcomp(&regex, pattern, REG_NOSUB) != 0)
-        return 0;
-    const int found = regexec(&regex, subject, 0, NULL, 0) == 0;
-    regfree(&regex);
-    return found ? 1.0f : 0.0f;
+/* The engine compiles patterns, once each. */
+float slu_match(const sl_call* call, sl_string pattern, sl_string subject) {
+    return call->services->match(call->engine, pattern, subject) != 0 ? 1.0f : 0.0f;
 }
 
-slf slv_match(sl_string pattern, sl_string subject) {
-    return slv_spread_f(slu_match(pattern, subject));
+slf slv_match(const sl_call* call, sli mask, sl_string pattern, sl_string subject) {
+    (void)mask;
+    return slv_spread_f(slu_match(call, pattern, subject));
 }

@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <regex.h>
 #include <string>
 #include <unordered_set>
 #include <utility>
@@ -66,6 +67,10 @@ public:
     std::map<std::string, std::string> shader_names;             // "" = the running shader
     std::array<float, 2> clipping{0, 1};
     int ray_level = 0, ray_type = SL_RAY_camera;
+    std::function<void(const std::string&, std::uint32_t first, std::uint32_t mask,
+                       const sl_value* outputs, int num_outputs, const sl_value* inputs,
+                       int num_inputs)>
+        shadeop;
 
     // What map() answers for a channel and a lane; none: there are no maps.
     std::function<float(const sl_map_query&, int, std::uint32_t)> map;
@@ -193,6 +198,27 @@ private:
         return set;
     }
 
+    static std::uint32_t light_message_(void* engine, const sl_light_query* query, sl_string name,
+                                        std::int32_t type, std::int32_t array_length,
+                                        float* value) {
+        return message_(engine, SL_MESSAGE_lightsource, name, type, array_length, query->first,
+                        query->mask, value);
+    }
+    static std::int32_t match_(void*, sl_string pattern, sl_string subject) {
+        regex_t regex;
+        if (!pattern || !subject || regcomp(&regex, pattern, REG_NOSUB) != 0)
+            return 0;
+        const int found = regexec(&regex, subject, 0, nullptr, 0) == 0;
+        regfree(&regex);
+        return found;
+    }
+    // Calls shadeop, if a test has set it.
+    static void shadeop_(void* engine, sl_string function, std::uint32_t first, std::uint32_t mask,
+                         const sl_value* outputs, std::int32_t num_outputs, const sl_value* inputs,
+                         std::int32_t num_inputs) {
+        if (of(engine).shadeop)
+            of(engine).shadeop(function, first, mask, outputs, num_outputs, inputs, num_inputs);
+    }
     static void print_(void* engine, uint32_t, sl_string text) {
         of(engine).printed.emplace_back(text);
     }

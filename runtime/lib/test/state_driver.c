@@ -7,36 +7,30 @@
 
 #include <string.h>
 
-_Static_assert(sizeof(driver_value) == sizeof(sl_value), "driver_value repeats sl_value");
-
 static sl_call begin(const sl_batch* batch) {
     sl_call call;
     sl_call_begin(&call, batch, 0, batch->count < SL_LANES ? batch->count : SL_LANES);
     return call;
 }
 
-static const sl_value* as_values(const driver_value* values) {
-    return (const sl_value*)(const void*)values;
-}
-
 static void print(const sl_batch* batch, uint32_t mask, int uniform, sl_string format,
-                  const driver_value* values, int n) {
+                  const sl_value* values, int n) {
     sl_call call = begin(batch);
     call.counters = &call.own_counters;
     if (uniform)
-        slu_printf(&call, format, as_values(values), n);
+        slu_printf(&call, format, values, n);
     else
-        slv_printf(&call, sl_mask(mask), format, as_values(values), n);
+        slv_printf(&call, sl_mask(mask), format, values, n);
 }
 
 static void format(const sl_batch* batch, uint32_t mask, int uniform, sl_string text,
-                   const driver_value* values, int n, sl_string* result) {
+                   const sl_value* values, int n, sl_string* result) {
     const sl_call call = begin(batch);
     if (uniform) {
-        result[0] = slu_format(&call, text, as_values(values), n);
+        result[0] = slu_format(&call, text, values, n);
         return;
     }
-    const sls s = slv_format(&call, sl_mask(mask), text, as_values(values), n);
+    const sls s = slv_format(&call, sl_mask(mask), text, values, n);
     memcpy(result, s.s, sizeof s.s);
 }
 
@@ -47,15 +41,35 @@ static void concat(const sl_batch* batch, int uniform, const sl_string* parts, i
                         : slv_concat(&call, call.live, parts, n).s[SL_LANES - 1];
 }
 
-static float match(int uniform, sl_string pattern, sl_string subject) {
-    return uniform ? slu_match(pattern, subject) : slv_match(pattern, subject)[SL_LANES - 1];
+static float match(const sl_batch* batch, int uniform, sl_string pattern, sl_string subject) {
+    const sl_call call = begin(batch);
+    return uniform ? slu_match(&call, pattern, subject)
+                   : slv_match(&call, call.live, pattern, subject)[SL_LANES - 1];
+}
+
+static void shadeop(const sl_batch* batch, uint32_t mask, int uniform, sl_string function,
+                    const sl_value* outputs, int num_outputs, const sl_value* inputs) {
+    const sl_call call = begin(batch);
+    const sli m = sl_mask(mask);
+    if (uniform && num_outputs == 0)
+        slu_shadeop_0(&call, function, inputs, 2);
+    else if (uniform && num_outputs == 1)
+        slu_shadeop_1(&call, function, &outputs[0], inputs, 2);
+    else if (uniform)
+        slu_shadeop_2(&call, function, &outputs[0], &outputs[1], inputs, 2);
+    else if (num_outputs == 0)
+        slv_shadeop_0(&call, m, function, inputs, 2);
+    else if (num_outputs == 1)
+        slv_shadeop_1(&call, m, function, &outputs[0], inputs, 2);
+    else
+        slv_shadeop_2(&call, m, function, &outputs[0], &outputs[1], inputs, 2);
 }
 
 typedef float ask_uniform(const sl_call* call, sl_string name, const sl_value* out);
 typedef slf ask_lanes(const sl_call* call, sli mask, sl_string name, const sl_value* out);
 
 static void ask(const sl_batch* batch, uint32_t mask, int uniform, int kind, sl_string name,
-                const driver_value* out, float* result) {
+                const sl_value* out, float* result) {
     static const struct {
         int kind;
         ask_uniform* uniform;
@@ -72,15 +86,18 @@ static void ask(const sl_batch* batch, uint32_t mask, int uniform, int kind, sl_
         {SL_MESSAGE_rendererinfo, slu_message_rendererinfo, slv_message_rendererinfo},
         {DRIVER_rayinfo, slu_rayinfo, slv_rayinfo},
     };
-    const sl_call call = begin(batch);
+    sl_call call = begin(batch);
+    sl_light_loop loop = {0};
+    if (kind == SL_MESSAGE_lightsource) /* as if inside illuminance */
+        call.lights = &loop;
     for (unsigned i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         if (rows[i].kind != kind)
             continue;
         if (uniform) {
-            result[0] = rows[i].uniform(&call, name, as_values(out));
+            result[0] = rows[i].uniform(&call, name, out);
             return;
         }
-        const slf r = rows[i].lanes(&call, sl_mask(mask), name, as_values(out));
+        const slf r = rows[i].lanes(&call, sl_mask(mask), name, out);
         memcpy(result, &r, sizeof r);
     }
 }
@@ -118,4 +135,5 @@ const state_driver state_driver_8
 #else
 const state_driver state_driver_4
 #endif
-    = {SL_LANES, print, format, concat, match, ask, shader_name, ray_label, outputs_respect_mask};
+    = {SL_LANES, print,       format,    concat,  match,
+       ask,      shader_name, ray_label, shadeop, outputs_respect_mask};

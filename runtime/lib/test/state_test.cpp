@@ -32,6 +32,15 @@ const Covers covers{"concat",
                     "message_rendererinfo",
                     "shadername",
                     "shadername_of",
+                    "shadeop_0",
+                    "shadeop_1",
+                    "shadeop_2",
+                    "shadeop_3",
+                    "shadeop_4",
+                    "shadeop_5",
+                    "shadeop_6",
+                    "shadeop_7",
+                    "shadeop_8",
                     "filterstep",
                     "Du_f",
                     "Du_3",
@@ -100,7 +109,7 @@ protected:
             }
     }
     // format() of uniform values
-    std::string format(bool uniform, const char* text, std::vector<driver_value> values) {
+    std::string format(bool uniform, const char* text, std::vector<sl_value> values) {
         sl_string result[8] = {};
         driver->format(&batch.batch(), 1, uniform, text, values.data(),
                        static_cast<int>(values.size()), result);
@@ -111,7 +120,7 @@ protected:
     const state_driver* driver = nullptr;
 };
 
-driver_value value(sl_type type, void* data, int array_length = 0, bool varying = false) {
+sl_value value(sl_type type, void* data, int array_length = 0, bool varying = false) {
     return {type, varying, array_length, data};
 }
 
@@ -169,8 +178,8 @@ TEST_F(State, PrintfOncePerLivePoint) {
     each_width([&](bool uniform) {
         if (uniform)
             return;
-        const driver_value varying[] = {value(SL_TYPE_float, x.v, 0, true),
-                                        value(SL_TYPE_float, &same)};
+        const sl_value varying[] = {value(SL_TYPE_float, x.v, 0, true),
+                                    value(SL_TYPE_float, &same)};
         driver->print(&batch.batch(), 0b1010, false, "%.0f %.0f\n", varying, 2);
         EXPECT_EQ(engine.printed,
                   (std::vector<std::string>{"1 5\n", "3 5\n"})); // only active lanes
@@ -193,7 +202,7 @@ TEST_F(State, FormatPerLane) {
         if (uniform)
             return;
         sl_string result[8] = {};
-        const driver_value v = value(SL_TYPE_float, x.v, 0, true);
+        const sl_value v = value(SL_TYPE_float, x.v, 0, true);
         driver->format(&batch.batch(), 0b0110, false, "%.1f", &v, 1, result);
         EXPECT_STREQ(result[1], "0.5");
         EXPECT_STREQ(result[2], "1.0");
@@ -218,13 +227,13 @@ TEST_F(State, Concat) {
 
 TEST_F(State, Match) {
     each_width([&](bool u) {
-        EXPECT_EQ(driver->match(u, "^wood.*[0-9]$", "wood_floor7"), 1);
-        EXPECT_EQ(driver->match(u, "oo", "wood"), 1); // anywhere
-        EXPECT_EQ(driver->match(u, "^oo", "wood"), 0);
-        EXPECT_EQ(driver->match(u, "\\(ab\\)*c", "ababc"), 1);
-        EXPECT_EQ(driver->match(u, "a+b", "aab"), 0); // basic: + is itself
-        EXPECT_EQ(driver->match(u, "[", "["), 0);     // not an expression
-        EXPECT_EQ(driver->match(u, "", "x"), 1);
+        EXPECT_EQ(driver->match(&batch.batch(), u, "^wood.*[0-9]$", "wood_floor7"), 1);
+        EXPECT_EQ(driver->match(&batch.batch(), u, "oo", "wood"), 1); // anywhere
+        EXPECT_EQ(driver->match(&batch.batch(), u, "^oo", "wood"), 0);
+        EXPECT_EQ(driver->match(&batch.batch(), u, "\\(ab\\)*c", "ababc"), 1);
+        EXPECT_EQ(driver->match(&batch.batch(), u, "a+b", "aab"), 0); // basic: + is itself
+        EXPECT_EQ(driver->match(&batch.batch(), u, "[", "["), 0);     // not an expression
+        EXPECT_EQ(driver->match(&batch.batch(), u, "", "x"), 1);
     });
 }
 
@@ -236,7 +245,7 @@ TEST_F(State, MessagesByKind) {
         engine.messages[{kind, "size"}] = {.values = {static_cast<float>(kind) + 0.5f}};
         each_width([&](bool u) {
             Lanes out, result;
-            const driver_value v = value(SL_TYPE_float, out.v, 0, !u);
+            const sl_value v = value(SL_TYPE_float, out.v, 0, !u);
             driver->ask(&batch.batch(), 0b11, u, kind, "size", &v, result.v);
             EXPECT_EQ(result.v[0], 1);
             EXPECT_EQ(out.v[0], static_cast<float>(kind) + 0.5f);
@@ -248,7 +257,7 @@ TEST_F(State, MessagesByKind) {
             driver->ask(&batch.batch(), 1, u, kind, "absent", &v, result.v);
             EXPECT_EQ(result.v[0], 0);
             EXPECT_EQ(out.v[0], 9); // failure leaves the variable
-            const driver_value wrong = value(SL_TYPE_color, out.v, 0, !u);
+            const sl_value wrong = value(SL_TYPE_color, out.v, 0, !u);
             driver->ask(&batch.batch(), 1, u, kind, "size", &wrong, result.v);
             EXPECT_EQ(result.v[0], 0); // another type
         });
@@ -266,7 +275,7 @@ TEST_F(State, MessagesOfAllShapes) {
     each_width([&](bool u) {
         const int step = u ? 1 : driver->lanes;
         Lanes out, result;
-        driver_value v = value(SL_TYPE_float, out.v, 3, !u);
+        sl_value v = value(SL_TYPE_float, out.v, 3, !u);
         driver->ask(&batch.batch(), 1, u, SL_MESSAGE_option, "Format", &v, result.v);
         EXPECT_EQ(out.v[0], 640);
         EXPECT_EQ(out.v[step], 480);
@@ -305,7 +314,7 @@ TEST_F(State, RayQueries) {
         const int step = u ? 1 : driver->lanes;
         Lanes out, result;
         const auto ask = [&](const char* key, sl_type type) {
-            const driver_value v = value(type, out.v, 0, !u);
+            const sl_value v = value(type, out.v, 0, !u);
             driver->ask(&batch.batch(), 1, u, DRIVER_rayinfo, key, &v, result.v);
             return result.v[0] == 1;
         };
@@ -325,7 +334,7 @@ TEST_F(State, RayQueries) {
         EXPECT_FALSE(ask("direction", SL_TYPE_float));
         EXPECT_FALSE(ask("unheard of", SL_TYPE_float));
         alignas(64) sl_string text[8] = {};
-        driver_value v = value(SL_TYPE_string, text, 0, !u);
+        sl_value v = value(SL_TYPE_string, text, 0, !u);
         driver->ask(&batch.batch(), 1, u, DRIVER_rayinfo, "type", &v, result.v);
         EXPECT_STREQ(text[0], "specular");
         driver->ask(&batch.batch(), 1, u, DRIVER_rayinfo, "label", &v, result.v);

@@ -1,26 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Calls of built-in functions, by their rows in sl_builtins.def: slv_<body> on lanes, slu_<body> on
 // uniform values.
+#include "slc/emit_call.h"
+
 #include "slc/builtins.h"
-#include "slc/emit_common.h"
 #include "slc/ir_util.h"
 
 #include <algorithm>
 
 namespace slc {
-
-// One call being put together.
-struct Emitter::Call {
-    const Stmt& s;
-    const Block& b;
-    const BuiltinRow& row;
-    bool lanes;
-    std::size_t num_args; // of the row; differences follow
-    std::string form;     // of the body: "_d"; "_shared", whose knots all lanes share
-    std::vector<std::string> arguments;
-    // Outputs that go through a temporary: (variable, temporary).
-    std::vector<std::pair<VarId, std::string>> through;
-};
 
 namespace {
 
@@ -58,8 +46,11 @@ void Emitter::call(const Stmt& s, const Block& b) {
     const bool is_difference = s.op == Op::Difference;
     const std::size_t num_args =
         s.args.size() - (is_difference ? difference_places(s.builtin).size() : 0);
-    Call c{s, b, row, runs_on_lanes(s), num_args, is_difference ? "_d" : "", {}, {}};
+    Call c{s, b, row, runs_on_lanes(s), num_args, is_difference ? "_d" : ""};
     refresh_planes(row.reads, b);
+    if (shows_outputs(s)) {
+        store_outputs(b);
+    }
     Expr value;
     value.varying = c.lanes;
     value.form = form_of(row.result.kind == ArgKind::Exact ? row.result.type : Type::Vector);
@@ -70,8 +61,9 @@ void Emitter::call(const Stmt& s, const Block& b) {
                (row.body.starts_with("min_") || row.body.starts_with("max_"))) {
         value = chained(c);
     } else {
+        name_texts(c);
         if (row.has(PropContext)) {
-            c.arguments.push_back(c.lanes ? "call, " + mask(b) : "call");
+            c.arguments.push_back(c.lanes ? "call, " + c.mask : "call");
         }
         if (row.body.starts_with("spline_")) {
             spline_arguments(c);
@@ -87,7 +79,7 @@ void Emitter::call(const Stmt& s, const Block& b) {
         value.text = (c.lanes ? "slv_" : "slu_") + std::string(row.body) + c.form + "(" +
                      joined(c.arguments) + ")";
     }
-    if (may_defer(s, b) && c.through.empty()) {
+    if (may_defer(s, b) && c.through.empty() && c.texts.empty()) {
         defer(s.dst, std::move(value));
         return;
     }
@@ -95,9 +87,12 @@ void Emitter::call(const Stmt& s, const Block& b) {
     if (asks_light(row)) {
         out_.line("call->lights = " + lights_around(b) + ";");
     }
-    if (s.dst == no_var) {
+    if (!c.texts.empty()) {
+        value = for_each_text(c, value);
+    } else if (s.dst == no_var) {
         out_.line(value.text + ";");
-    } else {
+    }
+    if (s.dst != no_var) {
         assign(s.dst, value, b);
     }
     for (const auto& [v, temporary] : c.through) {
@@ -126,6 +121,15 @@ void Emitter::refresh_planes(std::uint64_t reads, const Block& b) {
     }
 }
 
+// Output parameters as they stand, for shaders that ask for them meanwhile.
+void Emitter::store_outputs(const Block& b) {
+    for (const Param& p : program_.params) {
+        if (var(p.var).is_output && flow_.place(p.var).is_written && mode_ == Mode::Shade) {
+            store_param(p.var, mask(b));
+        }
+    }
+}
+
 void Emitter::fixed_arguments(Call& c) {
     std::size_t next = 0;
     const bool name_first = c.row.has(PropChannel);
@@ -135,7 +139,7 @@ void Emitter::fixed_arguments(Call& c) {
         if (spec.is_output) {
             output_argument(c, v);
         } else if (var(v).type == Type::String) {
-            c.arguments.push_back(as_uniform(use(v), c.b).text);
+            c.arguments.push_back(text_argument(c, v));
         } else {
             const Form wanted =
                 spec.kind == ArgKind::Exact ? form_of(spec.type) : form_of(Type::Vector);
@@ -202,7 +206,7 @@ void Emitter::value_arguments(Call& c, std::size_t first) {
 void Emitter::spline_arguments(Call& c) {
     std::size_t next = 0;
     if (var(c.s.args[0]).type == Type::String) {
-        c.arguments.push_back(as_uniform(use(c.s.args[next++]), c.b).text);
+        c.arguments.push_back(text_argument(c, c.s.args[next++]));
     } else {
         c.arguments.emplace_back("0");
     }
@@ -253,10 +257,8 @@ std::string Emitter::knot_array(Call& c, std::size_t first) {
                     ", " + float_literal(knot.values[2]) + "}"; // the array can be a constant
             continue;
         }
-        Expr e = use(c.s.args[i]);
-        e = wanted == Form::String ? as_uniform(std::move(e), c.b)
-                                   : fit(std::move(e), wanted, lanes);
-        list += e.text;
+        const VarId v = c.s.args[i];
+        list += wanted == Form::String ? text_argument(c, v) : fit(use(v), wanted, lanes).text;
     }
     return std::string(lanes ? "(" : "(const ") + std::string(type_word(wanted, lanes)) + "[]){" +
            list + "}";

@@ -182,7 +182,7 @@ void Emitter::store_results() {
         if (variable.aux != 0) {
             store_aux(v);
         } else if (variable.kind == VarKind::Param) {
-            store_param(v);
+            store_param(v, "live");
         } else if (variable.kind == VarKind::Global && (results_ >> variable.index & 1U) != 0) {
             out_.line("sl_store_" + std::string(form_suffix(form(v))) +
                       "(call, live, batch->main->var[SL_VAR_" + variable.name + "], " + names_[i] +
@@ -191,7 +191,7 @@ void Emitter::store_results() {
     }
 }
 
-void Emitter::store_param(VarId v) {
+void Emitter::store_param(VarId v, const std::string& lanes) {
     const Var& p = var(v);
     const std::string& name = names_[static_cast<std::size_t>(v)];
     const std::string suffix(form_suffix(form(v)));
@@ -202,11 +202,12 @@ void Emitter::store_param(VarId v) {
         return; // arrays were written in place
     }
     if (p.array_length == 0) {
-        out_.line("sl_store_" + suffix + "(call, live, params->" + name + ", " + name + ");");
+        out_.line("sl_store_" + suffix + "(call, " + lanes + ", params->" + name + ", " + name +
+                  ");");
         return;
     }
     out_.line("for (int sl_k = 0; sl_k < " + std::to_string(p.array_length) + "; sl_k++)");
-    out_.line("    sl_store_" + suffix + "(call, live, params->" + name + " + sl_k * " +
+    out_.line("    sl_store_" + suffix + "(call, " + lanes + ", params->" + name + " + sl_k * " +
               std::to_string(num_components(p.type)) + " * batch->stride, " + name + "[sl_k]);");
 }
 

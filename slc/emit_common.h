@@ -112,6 +112,7 @@ private:
     [[nodiscard]] std::string_view type_word(Form form, bool is_varying) const;
     [[nodiscard]] std::string declarator(VarId v, bool constant) const;
     [[nodiscard]] std::string zero(VarId v);
+    [[nodiscard]] std::string zero_of(Form form, bool is_varying);
     [[nodiscard]] Expr constant(const Var& v);
     [[nodiscard]] std::string string_literal(const std::string& text);
     Expr use(VarId v); // takes a deferred expression in
@@ -142,6 +143,10 @@ private:
     void call(const Stmt& s, const Block& b);
     [[nodiscard]] bool runs_on_lanes(const Stmt& s) const;
     void fixed_arguments(Call& c);
+    // emit_distinct.cpp
+    void name_texts(Call& c);
+    [[nodiscard]] std::string text_argument(Call& c, VarId v);
+    [[nodiscard]] Expr for_each_text(Call& c, const Expr& value);
     void differences(Call& c);
     void output_argument(Call& c, VarId v);
     void value_arguments(Call& c, std::size_t first);
@@ -151,6 +156,7 @@ private:
     [[nodiscard]] std::string typed_value(VarId v);
     [[nodiscard]] std::string address_of(VarId v);
     void refresh_planes(std::uint64_t reads, const Block& b);
+    void store_outputs(const Block& b);
 
     // --- statements and control (emit_control.cpp)
     void block(const Block& b);
@@ -185,7 +191,7 @@ private:
     void load_aux(VarId v);
     void store_aux(VarId v);
     void store_results();
-    void store_param(VarId v);
+    void store_param(VarId v, const std::string& lanes);
     [[nodiscard]] bool may_defer(const Stmt& s, const Block& b) const;
     void defer(VarId dst, Expr value);
     void settle(VarId v); // writes a deferred value into a variable of its own

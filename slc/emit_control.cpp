@@ -312,6 +312,7 @@ void Emitter::illuminance(const Stmt& s, const Block& b) {
         arguments += fit(use(s.args[2]), Form::Float, true).text + ", ";
     }
     settle_all();
+    store_outputs(b);
     note_place(s.loc);
     out_.line("sl_light_loop " + lights + ";");
     out_.line((has_cone ? "sl_lights_begin_cone" : "sl_lights_begin") + arguments + category +

@@ -49,24 +49,24 @@ std::string Emitter::declarator(VarId v, bool constant) const {
     return text;
 }
 
+std::string Emitter::zero_of(Form form, bool is_varying) {
+    static constexpr std::string_view uniform[] = {"0", "{0}", "{{0}}"};
+    static constexpr std::string_view lanes[] = {"{0}", "{{0}, {0}, {0}}", "{{{0}}}"};
+    if (form == Form::String) {
+        const std::string text = string_literal("");
+        return is_varying ? "slv_spread_s(" + text + ")" : text;
+    }
+    return std::string((is_varying ? lanes : uniform)[static_cast<std::size_t>(form)]);
+}
+
 // The initialiser of a variable nothing has been assigned to.
 std::string Emitter::zero(VarId v) {
-    static constexpr std::string_view uniform[] = {"0", "{0}", "{{0}}", ""};
-    static constexpr std::string_view lanes[] = {"{0}", "{{0}, {0}, {0}}", "{{{0}}}", ""};
-    const auto i = static_cast<std::size_t>(form(v));
-    std::string text(varying(v) ? lanes[i] : uniform[i]);
-    if (form(v) == Form::String) {
-        text = string_literal("");
-        if (varying(v)) {
-            text = "slv_spread_s(" + text + ")";
-        }
-        std::string all = text;
-        for (int n = 1; n < var(v).array_length; ++n) {
-            all += ", " + text;
-        }
-        text = all;
+    const std::string one = zero_of(form(v), varying(v));
+    std::string all = one;
+    for (int n = 1; form(v) == Form::String && n < var(v).array_length; ++n) {
+        all += ", " + one;
     }
-    return var(v).array_length > 0 ? "{" + text + "}" : text;
+    return var(v).array_length > 0 ? "{" + all + "}" : all;
 }
 
 std::string Emitter::string_literal(const std::string& text) {

@@ -25,7 +25,7 @@ private:
     void opacity(const Stmt& s);
     void explain(const Stmt& s);
     void reason(int variable, const Stmt& s, const std::string& by);
-    [[nodiscard]] bool names_object_space(const Stmt& s) const;
+    [[nodiscard]] std::uint32_t spaces(const Stmt& s) const;
     [[nodiscard]] bool copies_Os(const Stmt& s) const;
     [[nodiscard]] const Var& var(VarId id) const {
         return program_.vars[static_cast<std::size_t>(id)];
@@ -50,6 +50,11 @@ Facts Analysis::run() {
     facts_.needed = live_.at_entry().globals() & ~local;
     facts_.written = written_globals(program_, program_.body) & ~(is_light() ? 0 : light_bits);
     block(program_.body);
+    for (const Param& p : program_.params) { // "object" is "shader" there
+        for (const Stmt& s : p.init) {
+            facts_.facts |= spaces(s) != 0 ? SL_FACT_shader_space : 0;
+        }
+    }
     if ((facts_.facts & SL_FACT_area_operators) != 0) {
         facts_.needed_aux = aux_.at_entry().globals() & ~light_bits;
     }
@@ -103,19 +108,22 @@ void Analysis::call(const Stmt& s) {
         facts_.facts |= row.has(f.property) ? f.fact : 0;
     }
     facts_.facts |= row.name == "ambient" ? SL_FACT_ambient : 0;
-    facts_.facts |= names_object_space(s) ? SL_FACT_object_space : 0;
+    facts_.facts |= spaces(s);
 }
 
-// "object", or a name that is not known before the shader runs.
-bool Analysis::names_object_space(const Stmt& s) const {
-    const BuiltinRow& row = builtin_of(s);
-    if (!row.has(PropSpaces)) {
-        return false;
-    }
-    return std::any_of(s.args.begin(), s.args.end(), [&](VarId id) {
+// "object" and "shader", or a name that is not known before the shader runs.
+std::uint32_t Analysis::spaces(const Stmt& s) const {
+    std::uint32_t found = 0;
+    for (const VarId id : s.args) {
         const Var& v = var(id);
-        return v.type == Type::String && (v.kind != VarKind::Const || v.text == "object");
-    });
+        if (s.op != Op::Call || !builtin_of(s).has(PropSpaces) || v.type != Type::String) {
+            continue;
+        }
+        const bool known = v.kind == VarKind::Const;
+        found |= !known || v.text == "object" ? SL_FACT_object_space : 0;
+        found |= !known || v.text == "shader" ? SL_FACT_shader_space : 0;
+    }
+    return found;
 }
 
 bool Analysis::copies_Os(const Stmt& s) const {
@@ -193,7 +201,8 @@ std::string facts_text(const Program& program, const Facts& facts) {
                  {SL_FACT_attributes, "attributes"},
                  {SL_FACT_random, "random"},
                  {SL_FACT_solar, "solar"},
-                 {SL_FACT_writes_opacity, "writes_opacity"}};
+                 {SL_FACT_writes_opacity, "writes_opacity"},
+                 {SL_FACT_shader_space, "shader_space"}};
     std::string out =
         std::string(shader_type_name(program.shader_type)) + " " + program.name + "\n";
     out += "needed:" + names_of(facts.needed) + "\nwritten:" + names_of(facts.written) +

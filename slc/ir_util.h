@@ -50,6 +50,16 @@ struct OpInfo {
 // Options of light statements that set a variable: "light:x", "surface:Ci"; not "send:...".
 [[nodiscard]] bool option_is_output(const Stmt& s, std::string_view name);
 
+// Other shaders run meanwhile, or are asked, and may look at this one's output parameters: lights,
+// message functions.
+[[nodiscard]] inline bool shows_outputs(const Stmt& s) {
+    if (s.op != Op::Call) {
+        return s.op == Op::Illuminance;
+    }
+    const BuiltinRow& row = builtin_of(s);
+    return row.has(PropLights) || (row.has(PropMessage) && row.has(PropState));
+}
+
 // Calls read(id) for every variable whose value the statement itself uses, bodies not included.
 // Partly changed arrays and output arguments that may keep their value count as read.
 template <class F> void for_each_read(const Stmt& s, F read);

@@ -130,6 +130,13 @@ void Liveness::read(VarId id, VarSet& live) const {
 
 void Liveness::add_reads(const Stmt& s, VarSet& live) const {
     for_each_read(s, [&](VarId id) { read(id, live); });
+    if (shows_outputs(s)) {
+        for (const Param& p : program_.params) {
+            if (program_.vars[static_cast<std::size_t>(p.var)].is_output) {
+                read(p.var, live);
+            }
+        }
+    }
     if (s.op != Op::Call) {
         return;
     }

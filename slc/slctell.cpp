@@ -59,6 +59,7 @@ constexpr struct {
                   {SL_FACT_traces, "traces"},
                   {SL_FACT_textures, "textures"},
                   {SL_FACT_object_space, "object_space"},
+                  {SL_FACT_shader_space, "shader_space"},
                   {SL_FACT_attributes, "attributes"},
                   {SL_FACT_random, "random"},
                   {SL_FACT_solar, "solar"},

@@ -291,7 +291,8 @@ enum {
     SL_FACT_attributes = 128,  /* attribute() or shader messages: batch by attribute state */
     SL_FACT_random = 256,      /* needs seed */
     SL_FACT_solar = 512,       /* light: contains solar */
-    SL_FACT_writes_opacity = 1024
+    SL_FACT_writes_opacity = 1024,
+    SL_FACT_shader_space = 2048 /* names "shader" space: depends on the place of the call */
 };
 
 /* The one exported symbol: `const sl_object sl_shader_object`. */

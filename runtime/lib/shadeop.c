@@ -9,7 +9,7 @@ enum { MOST_OUTPUTS = 8 };
 
 static void ask(const sl_call* call, uint32_t mask, sl_string function,
                 const sl_value* const* outputs, int num_outputs, const sl_value* values, int n) {
-    sl_value out[MOST_OUTPUTS];
+    sl_value out[MOST_OUTPUTS] = {{0}};
     for (int i = 0; i < num_outputs; i++)
         out[i] = *outputs[i];
     call->services->shadeop(call->engine, function, call->first, mask, out, num_outputs, values, n);

@@ -46,6 +46,9 @@ void HitShader::scatter_outputs(std::uint32_t shading_class, const sl_points& pl
     for (const ChannelSource& source : outputs_->sources(shading_class)) {
         Planes from;
         switch (source.from) {
+        case ChannelSource::From::Displacement:
+            from = param_planes(thread_.displacement, source);
+            break;
         case ChannelSource::From::Surface:
             from = param_planes(thread_.surface, source);
             break;

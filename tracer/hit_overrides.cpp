@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Primitive variables that take the place of surface parameters (sl.md 5.8). All hits here are of
+// Primitive variables that take the place of parameters (sl.md 5.8). All hits here are of
 // one shape. Varying parameters take any variable point by point; uniform ones hold one value per
 // batch, so points are first brought together by value: slow for variables that vary, but right.
 #include "tracer/hit_shader.h"
@@ -29,15 +29,16 @@ std::size_t floats_of(const sl_param& param) {
 const rib::Param* HitShader::overriding(const ShadingClass& c, const ParamOverride& o,
                                         const geo::Hit& hit) const {
     const rib::Param* variable = frame_.world->primitive_variable(hit, o.name);
-    return variable != nullptr && fits(*variable, c.surface->object().params[o.param]) ? variable
-                                                                                       : nullptr;
+    return variable != nullptr && fits(*variable, c.shader(o.stage)->object().params[o.param])
+               ? variable
+               : nullptr;
 }
 
 std::size_t HitShader::equal_values(const ShadingClass& c, std::span<std::uint32_t> members,
                                     std::size_t begin) {
     std::size_t end = members.size();
     for (const ParamOverride& o : c.overrides) {
-        const sl_param& param = c.surface->object().params[o.param];
+        const sl_param& param = c.shader(o.stage)->object().params[o.param];
         const bool one_value = param.detail == SL_DETAIL_uniform && param.type != SL_TYPE_string;
         const rib::Param* variable = one_value ? overriding(c, o, hits_[members[begin]]) : nullptr;
         if (variable == nullptr || variable->decl.storage == rib::StorageClass::Constant) {
@@ -74,10 +75,13 @@ std::size_t HitShader::equal_values(const ShadingClass& c, std::span<std::uint32
     return end;
 }
 
-void HitShader::bind_overrides(const ShadingClass& c, rt::ShadeBatch& batch) {
+void HitShader::bind_overrides(const ShadingClass& c, Stage stage, rt::ShadeBatch& batch) {
     const std::span<const geo::Hit> hits = subject_hits_;
     for (const ParamOverride& o : c.overrides) {
-        const sl_param& param = c.surface->object().params[o.param];
+        if (o.stage != stage) {
+            continue;
+        }
+        const sl_param& param = c.shader(o.stage)->object().params[o.param];
         const rib::Param* variable = overriding(c, o, hits.front());
         if (variable == nullptr) {
             continue;

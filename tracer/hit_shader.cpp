@@ -19,13 +19,6 @@ constexpr std::uint64_t bit(sl_variable id) {
     return 1ULL << id;
 }
 
-// Variables that come from the geometry; the rest of a shader's needs is filled here.
-constexpr std::uint64_t geometry_variables =
-    bit(SL_VAR_P) | bit(SL_VAR_N) | bit(SL_VAR_Ng) | bit(SL_VAR_I) | bit(SL_VAR_E) |
-    bit(SL_VAR_dPdu) | bit(SL_VAR_dPdv) | bit(SL_VAR_u) | bit(SL_VAR_v) | bit(SL_VAR_du) |
-    bit(SL_VAR_dv) | bit(SL_VAR_s) | bit(SL_VAR_t) | bit(SL_VAR_Cs) | bit(SL_VAR_Os) |
-    bit(SL_VAR_time) | bit(SL_VAR_dPdtime);
-
 bool is_number(float x) {
     return x - x == 0;
 }
@@ -159,20 +152,33 @@ void HitShader::shade_group(const Group& group) {
 void HitShader::shade_batch(const Group& group, std::span<const std::uint32_t> members) {
     const ShadingClass& c = classes_[group.shading_class];
     const std::uint64_t shown = shown_variables(group.shading_class);
-    gather(c, shown, members);
+    const NeededVariables after = needed_after(group);
+    is_displaced_ = is_displaced(group, after);
+    NeededVariables needed = after;
+    if (is_displaced_) {
+        const auto before = DisplacedBatch::needed_before(c.displacement->object(), after);
+        needed = {after.main | before.main, after.aux | before.aux};
+    }
+    const bool has_rays = gather(c, needed, members);
     ++thread_.batch_serial;
     BatchSubject subject{subject_hits_, &c.lights, group.attributes};
-    subject.surface = {c.surface, &thread_.surface};
+    if (has_rays) {
+        subject.incident = incident(static_cast<std::uint32_t>(members.size()));
+    }
+    if (thread_.trace != nullptr) {
+        thread_.trace->begin_batch(rays_.ray, members);
+    }
+    if (is_displaced_) {
+        run_displacement(c, after, subject, members);
+    }
     Execution surface(frame_, *c.surface);
     surface.thread = &thread_;
     surface.batch = &thread_.surface;
     surface.subject = &subject;
-    if (thread_.trace != nullptr) {
-        thread_.trace->begin_batch(rays_.ray, members);
-    }
+    subject.surface = {c.surface, &thread_.surface};
     const sl_points planes = run_surface(c, shown, surface, members);
     if (c.atmosphere != nullptr) {
-        run_atmosphere(*c.atmosphere, surface, members);
+        run_atmosphere(c, subject, members);
     }
     const bool all_good = scatter(members);
     if (outputs_ != nullptr) {
@@ -186,15 +192,14 @@ void HitShader::shade_batch(const Group& group, std::span<const std::uint32_t> m
     }
 }
 
-void HitShader::gather(const ShadingClass& c, std::uint64_t shown,
+bool HitShader::gather(const ShadingClass& c, NeededVariables needed,
                        std::span<const std::uint32_t> members) {
     gather_hits(c, members);
-    const std::uint64_t needed = shown | c.surface->object().needed |
-                                 (c.atmosphere != nullptr ? c.atmosphere->object().needed : 0);
-    const bool needs_footprint = (needed & (bit(SL_VAR_du) | bit(SL_VAR_dv))) != 0 ||
-                                 (c.surface->object().facts & SL_FACT_area_operators) != 0;
-    if (!needs_footprint && (needed & bit(SL_VAR_I)) == 0) {
-        return; // nothing else depends on the ray
+    const bool needs_footprint =
+        (needed.main & (bit(SL_VAR_du) | bit(SL_VAR_dv))) != 0 || needed.aux != 0;
+    const bool asks = c.by_attributes; // incident(), opposite(), sides of the surface
+    if (!needs_footprint && !asks && (needed.main & bit(SL_VAR_I)) == 0) {
+        return false; // nothing else depends on the ray
     }
     for (std::size_t i = 0; i < members.size(); ++i) {
         const std::uint32_t ray = ray_of(members[i]);
@@ -213,6 +218,7 @@ void HitShader::gather(const ShadingClass& c, std::uint64_t shown,
             batch_.footprint[i] = camera_.footprint(z, spacing_px);
         }
     }
+    return true;
 }
 
 // Neighbouring rays mostly meet one class: then the hits are used where they are.
@@ -252,6 +258,7 @@ sl_points HitShader::run_surface(const ShadingClass& c, std::uint64_t shown, Exe
     const std::uint64_t needed = instance.object().needed | shown | bit(SL_VAR_Cs) | bit(SL_VAR_Os);
     frame_.world->fill(subject_hits_, incident(count), needed & geometry_variables, stride, planes,
                        batch.aux_points_u(), batch.aux_points_v());
+    displace(planes, batch.aux_points_u(), batch.aux_points_v(), count);
     if (own_Cs) {
         std::copy_n(planes.var[SL_VAR_Cs], 3 * stride, Ci);
     }
@@ -260,9 +267,7 @@ sl_points HitShader::run_surface(const ShadingClass& c, std::uint64_t shown, Exe
     }
     fill_own_variables(batch, count);
     fill_seeds(batch, members);
-    if (!c.overrides.empty()) {
-        bind_overrides(c, batch);
-    }
+    bind_overrides(c, Stage::Surface, batch);
     run(batch, execution);
     thread_.counters.add(Counter::points_surface, count);
     stride_ = stride;
@@ -273,20 +278,24 @@ sl_points HitShader::run_surface(const ShadingClass& c, std::uint64_t shown, Exe
 
 // The volume between the eye and the surface; it takes Ci and Oi of the surface and gives those at
 // the eye.
-void HitShader::run_atmosphere(const ShaderEntry& shader, const Execution& surface,
+void HitShader::run_atmosphere(const ShadingClass& c, BatchSubject& subject,
                                std::span<const std::uint32_t> members) {
     const auto count = static_cast<std::uint32_t>(members.size());
+    const ShaderEntry& shader = *c.atmosphere;
     rt::ShadeBatch& batch = thread_.volume;
     batch.begin(shader.current(), count);
     Execution execution(frame_, shader);
     execution.thread = &thread_;
     execution.batch = &batch;
-    execution.subject = surface.subject;
+    execution.subject = &subject;
+    subject.atmosphere = {&shader, &batch};
     frame_.world->fill(subject_hits_, incident(count),
                        batch.instance().object().needed & geometry_variables, batch.stride(),
                        batch.points(), nullptr, nullptr);
+    displace(batch.points(), nullptr, nullptr, count);
     fill_own_variables(batch, count);
     fill_seeds(batch, members);
+    bind_overrides(c, Stage::Atmosphere, batch);
     const sl_points& planes = batch.points();
     float* const Ci = planes.var[SL_VAR_Ci];
     float* const Oi = planes.var[SL_VAR_Oi];

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shades the hits of rays: hits in, colour and opacity out, in the order of the hits. Hits are
-// grouped by shading class, groups are cut into batches, batches run surface and atmosphere shaders
-// (sl.md 5.1). One per thread; holds all scratch, so that nothing is allocated per ray. What a
-// point gets does not depend on the batch it falls into.
+// grouped by shading class, groups are cut into batches, batches run displacement, surface and
+// atmosphere shaders (sl.md 5.1). One per thread; holds all scratch, so that nothing is allocated
+// per ray. What a point gets does not depend on the batch it falls into.
 #pragma once
 
 #include "geometry/world.h"
 #include "tracer/camera.h"
+#include "tracer/displaced_batch.h"
 #include "tracer/execution.h"
 #include "tracer/film.h"
 #include "tracer/output_bindings.h"
@@ -45,6 +46,14 @@ public:
                std::span<float> out_extra);
 
 private:
+    // Variables that come from the geometry; the rest of a shader's needs is filled here.
+    static constexpr std::uint64_t geometry_variables =
+        1ULL << SL_VAR_P | 1ULL << SL_VAR_N | 1ULL << SL_VAR_Ng | 1ULL << SL_VAR_I |
+        1ULL << SL_VAR_E | 1ULL << SL_VAR_dPdu | 1ULL << SL_VAR_dPdv | 1ULL << SL_VAR_u |
+        1ULL << SL_VAR_v | 1ULL << SL_VAR_du | 1ULL << SL_VAR_dv | 1ULL << SL_VAR_s |
+        1ULL << SL_VAR_t | 1ULL << SL_VAR_Cs | 1ULL << SL_VAR_Os | 1ULL << SL_VAR_time |
+        1ULL << SL_VAR_dPdtime;
+
     // Hits that may share a batch.
     struct Group {
         std::uint32_t shading_class;
@@ -77,13 +86,27 @@ private:
         return outputs_ != nullptr ? outputs_->variables(shading_class) : 0;
     }
     void shade_batch(const Group& group, std::span<const std::uint32_t> members);
-    void gather(const ShadingClass& c, std::uint64_t shown, std::span<const std::uint32_t> members);
+    // False if nothing depends on the rays: then they are not gathered.
+    bool gather(const ShadingClass& c, NeededVariables needed,
+                std::span<const std::uint32_t> members);
     void gather_hits(const ShadingClass& c, std::span<const std::uint32_t> members);
     // Returns the planes of the variables, those of `shown` among them.
     sl_points run_surface(const ShadingClass& c, std::uint64_t shown, Execution& execution,
                           std::span<const std::uint32_t> members);
-    void run_atmosphere(const ShaderEntry& shader, const Execution& surface,
+    void run_atmosphere(const ShadingClass& c, BatchSubject& subject,
                         std::span<const std::uint32_t> members);
+    // hit_displacement.cpp
+    [[nodiscard]] NeededVariables needed_after(const Group& group) const;
+    [[nodiscard]] bool is_displaced(const Group& group, NeededVariables after) const;
+    void run_displacement(const ShadingClass& c, NeededVariables after, BatchSubject& subject,
+                          std::span<const std::uint32_t> members);
+    // The displaced values in place of those of the geometry.
+    void displace(const sl_points& main, const sl_points* aux_u, const sl_points* aux_v,
+                  std::uint32_t count) const {
+        if (is_displaced_) {
+            displaced_.apply(main, aux_u, aux_v, {incident(count), camera_.perspective()});
+        }
+    }
     [[nodiscard]] geo::Incident incident(std::uint32_t count) const;
     void fill_own_variables(rt::ShadeBatch& batch, std::uint32_t count) const;
     void fill_seeds(rt::ShadeBatch& batch, std::span<const std::uint32_t> members) const;
@@ -102,7 +125,7 @@ private:
     // the first to the front and returns where they end.
     [[nodiscard]] std::size_t equal_values(const ShadingClass& c, std::span<std::uint32_t> members,
                                            std::size_t begin);
-    void bind_overrides(const ShadingClass& c, rt::ShadeBatch& batch);
+    void bind_overrides(const ShadingClass& c, Stage stage, rt::ShadeBatch& batch);
     [[nodiscard]] const rib::Param* overriding(const ShadingClass& c, const ParamOverride& o,
                                                const geo::Hit& hit) const;
 
@@ -126,6 +149,8 @@ private:
     std::unordered_map<Key, std::uint32_t, KeyHash> group_of_key_;
     std::vector<std::uint32_t> group_of_hit_, members_;
     Batch batch_;
+    DisplacedBatch displaced_;
+    bool is_displaced_ = false;           // the batch in work
     float *Ci_ = nullptr, *Oi_ = nullptr; // results of the batch in work, planes of stride_
     std::uint32_t stride_ = 0;
     std::vector<float> values_;

@@ -96,12 +96,21 @@ std::uint32_t from_stage(const Execution& execution, const MessageQuery& query,
                : param_of_instance(query, bound_shader(execution, which));
 }
 
-// Lanes whose ray comes from outside the surface; all of them where there is no ray.
-std::uint32_t lanes_outside(const Execution& execution, const MessageQuery& query) {
+// I and Ng of the undisplaced surface at the lanes of a query, whatever the shaders need.
+struct Facing {
+    alignas(64) float I[3 * SL_LANES_MAX] = {};
+    alignas(64) float Ng[3 * SL_LANES_MAX] = {};
+    std::uint32_t outside = 0; // lanes whose ray comes from outside
+    bool known = false;        // false where there is no ray
+};
+
+Facing facing_of(const Execution& execution, const MessageQuery& query) {
+    Facing facing;
+    facing.outside = query.mask;
     const BatchSubject& subject = *execution.subject;
     const std::size_t at = subject_index(execution, query);
     if (subject.incident.ox.empty() || at >= subject.hits.size()) {
-        return query.mask;
+        return facing;
     }
     const std::size_t n = std::min<std::size_t>(query.lanes, subject.hits.size() - at);
     const auto part = [&](std::span<const float> values) {
@@ -110,22 +119,46 @@ std::uint32_t lanes_outside(const Execution& execution, const MessageQuery& quer
     const geo::Incident& all = subject.incident;
     const geo::Incident incident{part(all.ox), part(all.oy), part(all.oz),       part(all.dx),
                                  part(all.dy), part(all.dz), part(all.footprint)};
-    alignas(64) float I[3 * SL_LANES_MAX] = {}, Ng[3 * SL_LANES_MAX] = {};
     sl_points points = {};
-    points.var[SL_VAR_I] = I;
-    points.var[SL_VAR_Ng] = Ng;
+    points.var[SL_VAR_I] = facing.I;
+    points.var[SL_VAR_Ng] = facing.Ng;
     execution.frame.world->fill(subject.hits.subspan(at, n), incident,
                                 1ULL << SL_VAR_I | 1ULL << SL_VAR_Ng, SL_LANES_MAX, points, nullptr,
                                 nullptr);
-    std::uint32_t outside = 0;
+    facing.known = true;
     for (std::uint32_t lane = 0; lane < n; ++lane) {
         float along = 0;
         for (std::size_t k = 0; k < 3; ++k) {
-            along += I[k * SL_LANES_MAX + lane] * Ng[k * SL_LANES_MAX + lane];
+            along += facing.I[k * SL_LANES_MAX + lane] * facing.Ng[k * SL_LANES_MAX + lane];
         }
-        outside |= along <= 0 ? 1U << lane : 0;
+        facing.outside &= along <= 0 ? ~0U : ~(1U << lane);
     }
-    return query.mask & outside;
+    return facing;
+}
+
+// "geometry:backfacing" and "geometry:geometricnormal": attributes of the point.
+std::uint32_t from_geometry(const Execution& execution, const MessageQuery& query) {
+    const std::string_view name = query.name;
+    const bool backfacing = name == "geometry:backfacing" && query.type == SL_TYPE_float;
+    const bool normal =
+        name == "geometry:geometricnormal" && types_agree(query.type, SL_TYPE_normal);
+    if ((!backfacing && !normal) || query.array_length > 0) {
+        return 0;
+    }
+    const Facing facing = facing_of(execution, query);
+    if (!facing.known) {
+        return 0;
+    }
+    if (normal) {
+        copy_floats(query, facing.Ng, SL_LANES_MAX, 0);
+        return query.mask;
+    }
+    float back[SL_LANES_MAX];
+    for (std::uint32_t lane = 0; lane < SL_LANES_MAX; ++lane) {
+        back[lane] = (facing.outside >> lane & 1U) != 0 ? 0 : 1;
+    }
+    copy_floats(query, back, SL_LANES_MAX, 0);
+    return query.mask;
 }
 
 // The volumes of the two sides: Exterior outside, or the Atmosphere where there is none; Interior
@@ -139,7 +172,7 @@ std::uint32_t from_volume(const Execution& execution, const MessageQuery& query)
         exterior = bound_shader(execution, &rib::Attributes::atmosphere);
     }
     const ShaderEntry* interior = bound_shader(execution, &rib::Attributes::interior);
-    const std::uint32_t outside = lanes_outside(execution, query);
+    const std::uint32_t outside = facing_of(execution, query).outside;
     const bool is_incident = query.kind == SL_MESSAGE_incident;
     MessageQuery of_exterior = query, of_interior = query;
     of_exterior.mask = is_incident ? outside : query.mask & ~outside;
@@ -173,6 +206,9 @@ std::uint32_t from_attributes(const Execution& execution, const MessageQuery& qu
     const rib::Attributes* attributes = attributes_of(execution);
     if (attributes == nullptr) {
         return 0;
+    }
+    if (const std::uint32_t set = from_geometry(execution, query)) {
+        return set;
     }
     std::optional<StateValue> state = query_attribute(*attributes, query.name);
     if (!state && std::string_view(query.name) == "Ri:Transformation" &&

@@ -23,8 +23,7 @@ public:
     }
 
     void attributes(const rib::Attributes& a) {
-        shader("Displacement", a.displacement,
-               "displacement shaders are not run by this version; surfaces stay as they are");
+        displacement(a);
         shader("Interior", a.interior, "no rays pass through volumes in this version; ignored");
         shader("Exterior", a.exterior, "no rays pass through volumes in this version; ignored");
         const rib::Param* casts = a.find("render:casts_shadows");
@@ -33,6 +32,21 @@ public:
             once("casts_shadows", casts->pos,
                  "Attribute \"render\" \"casts_shadows\" \"" + casts->strings[0] +
                      "\": shadows are opaque in this version");
+        }
+    }
+
+    // Without these attributes BMRT bumps normals only, too.
+    void displacement(const rib::Attributes& a) {
+        const rib::Param* moves = a.find("render:truedisplacement");
+        const rib::Param* bound = a.find("displacementbound:sphere");
+        const auto is_set = [](const rib::Param* p) {
+            return p != nullptr && ((!p->floats.empty() && p->floats[0] != 0) ||
+                                    (!p->ints.empty() && p->ints[0] != 0));
+        };
+        if (is_set(moves) || is_set(bound)) {
+            shader("Displacement", a.displacement,
+                   "the surface is shaded as displaced; its outline and shadows stay where they "
+                   "are in this version");
         }
     }
 

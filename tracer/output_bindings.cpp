@@ -45,6 +45,7 @@ ShaderOutputs shader_outputs(const ShadingClasses& classes) {
     for (std::uint32_t i = 0; i < classes.size(); ++i) {
         note_outputs(classes[i].atmosphere, out);
         note_outputs(classes[i].surface, out);
+        note_outputs(classes[i].displacement, out);
     }
     return out;
 }
@@ -75,14 +76,16 @@ void OutputBindings::add_common(const Output& output) {
     }
 }
 
-// The atmosphere comes last, so its parameter counts; then the surface's; then what the language
-// predefines.
+// The atmosphere comes last, so its parameter counts; then the surface's, the displacement's; then
+// what the language predefines.
 void OutputBindings::add(const Output& output, const ShadingClass& c, Class& to, base::Diag& diag) {
     const bool found =
         (c.atmosphere != nullptr &&
          add_param(output, *c.atmosphere, ChannelSource::From::Atmosphere, to, diag)) ||
         (c.surface != nullptr &&
-         add_param(output, *c.surface, ChannelSource::From::Surface, to, diag));
+         add_param(output, *c.surface, ChannelSource::From::Surface, to, diag)) ||
+        (c.displacement != nullptr &&
+         add_param(output, *c.displacement, ChannelSource::From::Displacement, to, diag));
     if (!found) {
         add_variable(output, to);
     }

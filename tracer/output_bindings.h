@@ -15,11 +15,18 @@
 
 namespace trace {
 
-// Output parameters of the surface and atmosphere shaders that something drawn refers to.
+// Output parameters of the displacement, surface and atmosphere shaders that something drawn refers
+// to.
 [[nodiscard]] ShaderOutputs shader_outputs(const ShadingClasses& classes);
 
 struct ChannelSource {
-    enum class From : std::uint8_t { Surface, Atmosphere, Variable, One } from = From::One;
+    enum class From : std::uint8_t {
+        Displacement,
+        Surface,
+        Atmosphere,
+        Variable,
+        One
+    } from = From::One;
     int index = 0; // parameter or sl_variable
     int component = 0;
     int channel = 0; // of the sample

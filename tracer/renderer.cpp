@@ -15,7 +15,7 @@ Renderer::~Renderer() = default;
 
 void Renderer::shader_named(const rib::ShaderCall& call, rib::ShaderRole role) {
     const bool is_there = role == rib::ShaderRole::Surface || !is_null_shader(call);
-    if (ShaderSet::uses(role) && is_there) {
+    if (is_there) {
         library_.prefetch(call.name, call.pos, *call.search_path);
     }
 }

@@ -167,7 +167,7 @@ std::unique_ptr<ShaderEntry> make_entry(const ShaderSources& sources,
 
 // The shader sees the space of its call: through a name, or in a parameter that lies in it.
 bool depends_on_space(const sl_object& object) {
-    bool depends = (object.facts & SL_FACT_object_space) != 0;
+    bool depends = (object.facts & (SL_FACT_object_space | SL_FACT_shader_space)) != 0;
     for (int i = 0; i < object.num_params; ++i) {
         const int type = object.params[i].type;
         depends |= type == SL_TYPE_point || type == SL_TYPE_vector || type == SL_TYPE_normal ||
@@ -186,8 +186,12 @@ ShaderSet::ShaderSet(const ShaderSources& sources)
                                           sources.spaces.camera_from_world(), {}));
     }
     for (const rib::Attributes& attributes : scene.attributes) {
+        load(sources, attributes.displacement, SL_SHADER_displacement, false);
         load(sources, attributes.surface, SL_SHADER_surface, false);
-        load(sources, attributes.atmosphere, SL_SHADER_volume, false);
+        for (const rib::ShaderId volume :
+             {attributes.atmosphere, attributes.interior, attributes.exterior}) {
+            load(sources, volume, SL_SHADER_volume, false);
+        }
     }
     for (const rib::Light& light : scene.lights) {
         load(sources, light.shader, SL_SHADER_light, light.in_camera_space);
@@ -196,21 +200,6 @@ ShaderSet::ShaderSet(const ShaderSources& sources)
 }
 
 ShaderSet::~ShaderSet() = default;
-
-bool ShaderSet::uses(rib::ShaderRole role) {
-    switch (role) {
-    case rib::ShaderRole::Surface:
-    case rib::ShaderRole::Atmosphere:
-    case rib::ShaderRole::Light:
-    case rib::ShaderRole::Imager:
-        return true;
-    case rib::ShaderRole::Displacement:
-    case rib::ShaderRole::Interior:
-    case rib::ShaderRole::Exterior:
-        return false; // not_done.cpp says so
-    }
-    return false;
-}
 
 // Exporters write one Surface per object: calls with equal names and values share an instance where
 // the place of the call makes no difference, so that their points fill batches together.

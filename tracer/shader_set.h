@@ -53,9 +53,6 @@ public:
     explicit ShaderSet(const ShaderSources& sources);
     ~ShaderSet();
 
-    // False for shaders that nothing runs.
-    [[nodiscard]] static bool uses(rib::ShaderRole role);
-
     // nullptr: none given, missing, broken or "null" where that means nothing to do.
     [[nodiscard]] const ShaderEntry* get(rib::ShaderId id) const {
         return id < entries_.size() ? entries_[id] : nullptr;

@@ -2,6 +2,7 @@
 #include "tracer/shading_classes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <tuple>
@@ -24,17 +25,22 @@ void note_overrides(const rib::Primitive& primitive, std::uint32_t attributes,
     if (attributes >= scene.attributes.size()) {
         return;
     }
+    const rib::Attributes& state = scene.attributes[attributes];
+    const std::pair<Stage, const ShaderEntry*> stages[] = {
+        {Stage::Displacement, shaders.get(state.displacement)},
+        {Stage::Surface, shaders.surface(state.surface)},
+        {Stage::Atmosphere, shaders.get(state.atmosphere)}};
     for (const rib::Param& param : primitive.params.params) {
-        if (is_standard_variable(param.name)) {
-            continue;
-        }
-        const ShaderEntry& surface = *shaders.surface(scene.attributes[attributes].surface);
-        const int index = surface.instance->shader().find_param(param.name);
-        auto& list = out[attributes];
-        const bool known = std::any_of(list.begin(), list.end(),
-                                       [&](const ParamOverride& o) { return o.param == index; });
-        if (index >= 0 && !known) {
-            list.push_back({index, param.name});
+        for (const auto& [stage, shader] : stages) {
+            if (shader == nullptr || is_standard_variable(param.name)) {
+                continue;
+            }
+            const ParamOverride found{stage, shader->instance->shader().find_param(param.name),
+                                      param.name};
+            auto& list = out[attributes];
+            if (found.param >= 0 && std::find(list.begin(), list.end(), found) == list.end()) {
+                list.push_back(found);
+            }
         }
     }
 }
@@ -54,25 +60,37 @@ Overrides find_overrides(const rib::Scene& scene, const ShaderSet& shaders) {
         }
     }
     for (auto& list : overrides) { // equal sets, equal lists
-        std::sort(list.begin(), list.end(),
-                  [](const ParamOverride& a, const ParamOverride& b) { return a.param < b.param; });
+        std::sort(list.begin(), list.end());
     }
     return overrides;
 }
 
 bool has_fact(const ShadingClass& c, std::uint32_t fact) {
-    const bool surface = c.surface != nullptr && (c.surface->object().facts & fact) != 0;
-    return surface || (c.atmosphere != nullptr && (c.atmosphere->object().facts & fact) != 0);
+    return std::ranges::any_of(std::array{Stage::Displacement, Stage::Surface, Stage::Atmosphere},
+                               [&](Stage stage) {
+                                   const ShaderEntry* shader = c.shader(stage);
+                                   return shader != nullptr && (shader->object().facts & fact) != 0;
+                               });
+}
+
+// Lights see the attributes and shaders of what they light.
+bool lights_ask(const LightList& list, const LightSet& lights) {
+    const auto asks = [&](rib::LightId id) {
+        return (lights[id].shader->object().facts & SL_FACT_attributes) != 0;
+    };
+    return std::ranges::any_of(list.ambient, asks) || std::ranges::any_of(list.directional, asks);
 }
 
 ShadingClass class_of(const rib::Attributes& attributes, const ShaderSet& shaders,
                       const LightSet& lights, const std::vector<ParamOverride>& overrides) {
     ShadingClass c;
+    c.displacement = shaders.get(attributes.displacement);
     c.surface = shaders.surface(attributes.surface);
     c.atmosphere = shaders.get(attributes.atmosphere);
     c.lights = lights.list(attributes);
     c.by_transform = has_fact(c, SL_FACT_object_space);
-    c.by_attributes = has_fact(c, SL_FACT_attributes) || !attributes.scoped_systems.empty();
+    c.by_attributes = has_fact(c, SL_FACT_attributes) || lights_ask(c.lights, lights) ||
+                      !attributes.scoped_systems.empty();
     c.overrides = overrides;
     return c;
 }
@@ -81,24 +99,19 @@ ShadingClass class_of(const rib::Attributes& attributes, const ShaderSet& shader
 
 ShadingClasses::ShadingClasses(const rib::Scene& scene, const ShaderSet& shaders,
                                const LightSet& lights) {
-    using Key = std::tuple<const ShaderEntry*, const ShaderEntry*, std::vector<rib::LightId>,
-                           std::vector<rib::LightId>, std::uint32_t, std::vector<int>>;
+    using Key = std::tuple<const ShaderEntry*, const ShaderEntry*, const ShaderEntry*,
+                           std::vector<rib::LightId>, std::vector<rib::LightId>, std::uint32_t,
+                           std::vector<ParamOverride>>;
     std::map<Key, std::uint32_t> index_of;
     const Overrides overrides = find_overrides(scene, shaders);
     facts_.reserve(scene.attributes.size());
     for (std::uint32_t i = 0; i < scene.attributes.size(); ++i) {
         const rib::Attributes& attributes = scene.attributes[i];
         ShadingClass c = class_of(attributes, shaders, lights, overrides[i]);
-        std::vector<int> params;
-        for (const ParamOverride& o : c.overrides) {
-            params.push_back(o.param);
-        }
-        const Key key{c.surface,
-                      c.atmosphere,
-                      c.lights.ambient,
-                      c.lights.directional,
-                      c.by_attributes ? i : rib::none,
-                      std::move(params)};
+        const Key key{c.displacement,       c.surface,
+                      c.atmosphere,         c.lights.ambient,
+                      c.lights.directional, c.by_attributes ? i : rib::none,
+                      c.overrides};
         const auto [it, is_new] =
             index_of.emplace(key, static_cast<std::uint32_t>(classes_.size()));
         if (is_new) {

@@ -1,34 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which points may share a batch. Attribute states that shade alike (surface, atmosphere, lights)
-// form one class; a class says by what else its points must be told apart. Made once per frame: at
-// a hit it is one table lookup.
+// Which points may share a batch. Attribute states that shade alike (displacement, surface,
+// atmosphere, lights) form one class; a class says by what else its points must be told apart. Made
+// once per frame: at a hit it is one table lookup.
 #pragma once
 
 #include "ribtools/scene.h"
 #include "tracer/lights.h"
 #include "tracer/shader_set.h"
 
+#include <compare>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 namespace trace {
 
-// A surface parameter that some primitive of the class supplies as a primitive variable (sl.md 5.8,
-// 3).
+// The shaders that run on a point, in this order.
+enum class Stage : std::uint8_t { Displacement, Surface, Atmosphere };
+
+// A parameter that some primitive of the class supplies as a primitive variable (sl.md 5.8, 3).
 struct ParamOverride {
+    Stage stage = Stage::Surface;
     int param = -1;
     std::string name;
-    friend bool operator==(const ParamOverride&, const ParamOverride&) = default;
+    friend auto operator<=>(const ParamOverride&, const ParamOverride&) = default;
 };
 
 struct ShadingClass {
+    const ShaderEntry* displacement = nullptr; // or none
     const ShaderEntry* surface = nullptr;
     const ShaderEntry* atmosphere = nullptr; // or none
     LightList lights;
     bool by_transform = false;  // the shaders name object space
-    bool by_attributes = false; // they ask for attribute state: one state per class
+    bool by_attributes = false; // they or their lights ask for attributes or messages: one
+                                // attribute state per class
     std::vector<ParamOverride> overrides;
+    [[nodiscard]] const ShaderEntry* shader(Stage stage) const {
+        return stage == Stage::Displacement ? displacement
+               : stage == Stage::Surface    ? surface
+                                            : atmosphere;
+    }
     // Points of such a class are told apart beyond the class.
     [[nodiscard]] bool needs_key() const { return by_transform || !overrides.empty(); }
 };

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/state_queries.h"
 
+#include "ribtools/declare.h"
 #include "tracer/sl_types.h"
 #include "tracer/version.h"
 
 #include <algorithm>
+#include <charconv>
 
 namespace trace {
 
@@ -38,6 +40,42 @@ std::optional<StateValue> user_value(const rib::Param* param) {
     return value;
 }
 
+std::vector<float> numbers_of(std::string_view text) {
+    std::vector<float> values;
+    while (true) {
+        text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+        float value = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        if (text.empty() || error != std::errc{}) {
+            return values;
+        }
+        values.push_back(value);
+        text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    }
+}
+
+// What "group:name" is where nobody has set it: the default of ri_options.def, if it gives one.
+std::optional<StateValue> default_value(rib::OptionCategory category, std::string_view key) {
+    const std::size_t colon = key.find(':');
+    if (colon == std::string_view::npos) {
+        return std::nullopt;
+    }
+    const rib::OptionRow* row =
+        rib::find_option(category, key.substr(0, colon), key.substr(colon + 1));
+    const auto decl = row != nullptr ? rib::option_type(*row) : std::nullopt;
+    if (!decl || row->fallback.empty()) {
+        return std::nullopt;
+    }
+    StateValue value;
+    value.type = sl_type_of(decl->type);
+    if (value.type == SL_TYPE_string) {
+        value.texts.emplace_back(row->fallback);
+    } else {
+        value.floats = numbers_of(row->fallback);
+    }
+    return value;
+}
+
 using Attributes = rib::Attributes;
 using Options = rib::Options;
 
@@ -67,7 +105,21 @@ constexpr AttributeRow attribute_rows[] = {
      [](const Attributes& a) {
          return text(a.interpolation == rib::Interpolation::Smooth ? "smooth" : "constant");
      }},
+    {"Bound",
+     [](const Attributes& a) {
+         return numbers({a.bound.begin(), a.bound.end()});
+     }},
 };
+
+std::optional<StateValue> approximation(const Attributes& attributes, std::string_view name) {
+    constexpr std::string_view prefix = "GeometricApproximation:";
+    if (!name.starts_with(prefix)) {
+        return std::nullopt;
+    }
+    const auto it = attributes.approximation.find(std::string(name.substr(prefix.size())));
+    return it == attributes.approximation.end() ? std::nullopt
+                                                : std::optional<StateValue>(number(it->second));
+}
 
 float frame_aspect(const Options& o) {
     return o.frame_aspect > 0
@@ -114,6 +166,15 @@ constexpr OptionRow option_rows[] = {
      [](const Options& o) {
          return numbers({o.gain, o.gamma});
      }},
+    {"Projection", [](const Options& o) { return text(o.projection); }},
+    {"Hider", [](const Options& o) { return text(o.hider); }},
+    {"RelativeDetail", [](const Options& o) { return number(o.relative_detail); }},
+    {"PixelFilter", [](const Options& o) { return text(o.filter); }},
+    {"PixelFilterWidth",
+     [](const Options& o) {
+         return numbers({o.filter_width[0], o.filter_width[1]});
+     }},
+    {"PixelVariance", [](const Options& o) { return number(o.pixel_variance); }},
     {"PixelSamples",
      [](const Options& o) {
          return numbers({static_cast<float>(o.xsamples), static_cast<float>(o.ysamples)});
@@ -138,7 +199,11 @@ std::optional<StateValue> query_attribute(const rib::Attributes& attributes,
     if (auto value = standard_value(attribute_rows, attributes, name)) {
         return value;
     }
-    return user_value(attributes.find(std::string(name)));
+    if (auto value = approximation(attributes, name)) {
+        return value;
+    }
+    auto value = user_value(attributes.find(std::string(name)));
+    return value ? value : default_value(rib::OptionCategory::Attribute, name);
 }
 
 std::optional<StateValue> query_option(const rib::Options& options, std::string_view name) {
@@ -146,7 +211,8 @@ std::optional<StateValue> query_option(const rib::Options& options, std::string_
         return value;
     }
     const auto it = options.user.find(std::string(name));
-    return it == options.user.end() ? std::nullopt : user_value(&it->second);
+    return it == options.user.end() ? default_value(rib::OptionCategory::Option, name)
+                                    : user_value(&it->second);
 }
 
 std::optional<StateValue> query_renderer(std::string_view name) {

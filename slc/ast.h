@@ -13,6 +13,10 @@
 #include <string_view>
 #include <vector>
 
+namespace slc {
+struct BuiltinRow;
+}
+
 namespace slc::ast {
 
 struct Function;
@@ -73,8 +77,9 @@ struct Expr {
     bool is_component = false; // checked: Index into the last brackets' color, point ... or matrix
     bool by_component = false; // checked: Call of a float function with triples
     int builtin = -1;          // checked: Call of a built-in row
-    Function* function = nullptr; // checked: Call of a user function
-    Costs costs;                  // checked
+    const BuiltinRow* external = nullptr; // ... of a function of a DSO
+    Function* function = nullptr;         // checked: Call of a user function
+    Costs costs;                          // checked
     std::vector<Type>
         arg_types; // checked: Call: type each argument is delivered as (Void: array or output)
     Type operand_types[2] = {Type::Void, Type::Void}; // checked: Unary, Binary

@@ -168,6 +168,10 @@ constexpr std::array<VariableRow, SL_VAR_COUNT> variables = {{
 
 } // namespace
 
+BuiltinRow decode_row(std::string_view name, std::string_view signature, std::uint32_t properties) {
+    return decode({name, signature, "", 0, properties, ""});
+}
+
 std::span<const BuiltinRow> builtin_rows() {
     static const std::vector<BuiltinRow> rows = decode_all();
     return rows;

@@ -64,6 +64,9 @@ struct BuiltinRow {
 };
 
 [[nodiscard]] std::span<const BuiltinRow> builtin_rows();
+// A row that is not in the table; the texts must live as long as it.
+[[nodiscard]] BuiltinRow decode_row(std::string_view name, std::string_view signature,
+                                    std::uint32_t properties);
 // Rows of one name that a user may call, in table order; returns their numbers.
 [[nodiscard]] std::vector<int> find_builtins(std::string_view name);
 // The first row with that body, hidden ones included; -1: none.

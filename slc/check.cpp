@@ -12,8 +12,8 @@ using ast::Symbol;
 using ast::SymbolKind;
 using ast::Variable;
 
-void check(ast::File& file, Messages& messages) {
-    Checker(file, messages).run();
+void check(ast::File& file, Externals& externals, Messages& messages) {
+    Checker(file, externals, messages).run();
 }
 
 void Checker::run() {

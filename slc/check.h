@@ -8,6 +8,7 @@
 
 #include "slc/ast.h"
 #include "slc/builtins.h"
+#include "slc/externals.h"
 #include "slc/messages.h"
 #include "slc/scope.h"
 
@@ -15,7 +16,7 @@
 
 namespace slc {
 
-void check(ast::File& file, Messages& messages);
+void check(ast::File& file, Externals& externals, Messages& messages);
 
 // Implicit conversion costs (sl.md 2.4): exact 0, P/V/N 1, float to P/V/N 8, float to color 9,
 // float to matrix 10; color to P/V/N and back, which the language does not have, last_resort.
@@ -27,8 +28,8 @@ constexpr std::uint8_t last_resort = 100;
 
 class Checker {
 public:
-    Checker(ast::File& file, Messages& messages)
-        : file_(file), messages_(messages), scopes_(file) {}
+    Checker(ast::File& file, Externals& externals, Messages& messages)
+        : file_(file), externals_(externals), messages_(messages), scopes_(file) {}
     void run();
 
 private:
@@ -87,6 +88,7 @@ private:
     // overload.cpp
     struct Candidate {
         int builtin = -1;
+        const BuiltinRow* external = nullptr;
         ast::Function* function = nullptr;
         Type result = Type::Void;
         std::uint32_t cost = 0;
@@ -97,7 +99,7 @@ private:
     void settle_call(ast::Expr& e, std::optional<Type> natural);
     std::vector<Candidate> candidates(ast::Expr& e);
     bool match_function(ast::Expr& e, ast::Function& f, Candidate& c);
-    void match_row(ast::Expr& e, int row, std::vector<Candidate>& out);
+    void match_row(ast::Expr& e, const BuiltinRow& row, Candidate c, std::vector<Candidate>& out);
     void match_by_component(ast::Expr& e, int row, std::vector<Candidate>& out);
     void check_later_function(std::string_view name);
     void settle_arguments(ast::Expr& e);
@@ -111,6 +113,7 @@ private:
     std::string describe_args(ast::Expr& e);
 
     ast::File& file_;
+    Externals& externals_;
     Messages& messages_;
     Scopes scopes_;
     ast::Function* function_ = nullptr; // being checked

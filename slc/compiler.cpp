@@ -16,11 +16,12 @@ namespace {
 // One compilation: the sources and messages all stages share.
 struct Session {
     Session(base::Diag& diag, const std::string& name, const CompileOptions& options)
-        : messages(diag, sources, options.on_message) {
+        : messages(diag, sources, options.on_message), externals(options.find_functions) {
         sources.add(name);
     }
     Sources sources;
     Messages messages;
+    Externals externals;
 };
 
 std::optional<std::string> read_or_complain(const std::string& path, Messages& messages) {
@@ -47,7 +48,7 @@ std::unique_ptr<ast::File> checked_tree(const std::string& text, Session& sessio
     // Names and types of a file with syntax errors are still worth checking, but not after the
     // limit.
     if (!session.messages.too_many()) {
-        check(*file, session.messages);
+        check(*file, session.externals, session.messages);
     }
     return file;
 }

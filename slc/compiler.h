@@ -6,6 +6,7 @@
 #pragma once
 
 #include "runtime/base/diag.h"
+#include "slc/externals.h"
 #include "slc/ir.h"
 
 #include <functional>
@@ -40,6 +41,7 @@ struct CompileOptions {
     std::function<bool()> cancelled; // true: ends the programs that run, without a message
     // If set, messages about the source go here instead of to the Diag.
     std::function<void(const Message&)> on_message;
+    FindFunctions find_functions; // of DSOs; empty: none
 };
 
 // All shaders of one source file.

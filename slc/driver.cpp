@@ -54,6 +54,9 @@ std::string settings_text(const Toolchain& tools, const ObjectOptions& options) 
         text += "\n-D" + define;
     }
     text += options.profile ? "\nprofile" : "";
+    if (options.shadeops != nullptr) {
+        text += "\nshadeops " + options.shadeops->identity();
+    }
     return text + (options.front.optimise ? "\noptimised" : "\nplain");
 }
 
@@ -68,6 +71,26 @@ bool stands_alone(std::string_view text) {
 }
 
 } // namespace
+
+void use_shadeops(ObjectOptions& options, base::ShadeopLibrary& library) {
+    if (library.empty()) {
+        return;
+    }
+    options.shadeops = &library;
+    options.front.find_functions = [&library](std::string_view name) {
+        std::vector<ExternalFunction> found;
+        for (const base::Shadeop* shadeop : library.find(name)) {
+            found.push_back({shadeop->name(), shadeop->signature()});
+        }
+        return found;
+    };
+}
+
+void report_shadeops(base::ShadeopLibrary& library, base::Diag& diag) {
+    for (const std::string& problem : library.take_problems()) {
+        diag.report(base::Severity::Warning, base::Code::NoFile, {}, problem);
+    }
+}
 
 std::string c_text(const Program& program, int lanes, const ObjectOptions& options) {
     const Program plain = with_plain_files(program);

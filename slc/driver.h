@@ -4,6 +4,7 @@
 #pragma once
 
 #include "runtime/base/diag.h"
+#include "runtime/base/shadeops.h"
 #include "slc/compiler.h"
 #include "slc/specialise.h"
 #include "slc/toolchain.h"
@@ -20,7 +21,13 @@ struct ObjectOptions {
     bool profile = false;     // the object counts time by source line (sl_profile.h)
     bool native_only = false; // only the variant this processor runs best
     std::string index_dir;    // where object_key remembers (key_index.h); "" = nowhere
+    base::ShadeopLibrary* shadeops = nullptr; // functions of DSOs; front.find_functions asks it
 };
+
+// Shaders may call the functions of this library, which must live as long as the options.
+void use_shadeops(ObjectOptions& options, base::ShadeopLibrary& library);
+// What is wrong with its DSOs, as warnings.
+void report_shadeops(base::ShadeopLibrary& library, base::Diag& diag);
 
 enum class Outcome { Done, BadInput, BadEnvironment }; // slc exits with 0, 1, 3
 

@@ -106,6 +106,7 @@ private:
     // lower_call.cpp
     VarId call(const ast::Expr& e, VarId into);
     VarId builtin_call(const ast::Expr& e, VarId into);
+    VarId external_call(const ast::Expr& e);
     VarId call_by_component(const ast::Expr& e, VarId into);
     static int row_of_body(std::string_view body);
     VarId builtin_by_body(std::string_view body, std::vector<VarId> args, Type result, Loc loc);

@@ -25,6 +25,9 @@ VarId Lowering::call(const Expr& e, VarId into) {
     if (e.function != nullptr) {
         return inline_call(e);
     }
+    if (e.external != nullptr) {
+        return external_call(e);
+    }
     return e.builtin >= 0 ? builtin_call(e, into) : constant(0);
 }
 
@@ -129,6 +132,39 @@ VarId Lowering::builtin_call(const Expr& e, VarId into) {
     emit(Op::Call, dst, std::move(args), e.loc).builtin = e.builtin;
     write_back(back, e.loc);
     return dst;
+}
+
+// A function of a DSO: a hidden row takes its name with the signature, then the result and the
+// outputs, then the inputs.
+VarId Lowering::external_call(const Expr& e) {
+    const BuiltinRow& row = *e.external;
+    if (in_init_) {
+        messages_.error_once(e.loc, "the default of a parameter is evaluated once per instance and "
+                                    "cannot call " +
+                                        quoted(row.name));
+    }
+    std::vector<VarId> outputs, inputs;
+    std::vector<WriteBack> back;
+    VarId result = no_var;
+    if (e.type != Type::Void) {
+        result = local(std::string(row.name) + "_result", e.type, 0, e.loc);
+        emit(Op::Copy, result, {zero(e.type)}, e.loc);
+        outputs.push_back(result);
+    }
+    for (std::size_t i = 0; i < e.args.size(); ++i) {
+        if (row.args[i].is_output) {
+            outputs.push_back(output_argument(*e.args[i], back));
+        } else {
+            inputs.push_back(protect(value_as(*e.args[i], row.args[i].type), e.args[i]->loc));
+        }
+    }
+    std::vector<VarId> args = {text(std::string(row.name) + " " + std::string(row.signature))};
+    args.insert(args.end(), outputs.begin(), outputs.end());
+    args.insert(args.end(), inputs.begin(), inputs.end());
+    emit(Op::Call, no_var, std::move(args), e.loc).builtin =
+        row_of_body("shadeop_" + std::to_string(outputs.size()));
+    write_back(back, e.loc);
+    return result;
 }
 
 // Output formals and arrays are names of the actual variable. An array formal that is assigned

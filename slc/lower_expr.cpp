@@ -12,7 +12,8 @@ using ast::Expr;
 using ast::ExprKind;
 
 bool has_effects(const Expr& e) {
-    if (e.kind == ExprKind::Assign || (e.kind == ExprKind::Call && e.function != nullptr)) {
+    if (e.kind == ExprKind::Assign ||
+        (e.kind == ExprKind::Call && (e.function != nullptr || e.external != nullptr))) {
         return true;
     }
     if (e.kind == ExprKind::Call && e.builtin >= 0) {

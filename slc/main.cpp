@@ -239,6 +239,10 @@ int main(int argc, char** argv) {
     base::catch_interrupts();
     parsed.options.object.front.cancelled = base::is_interrupted;
     parsed.options.object.front.standard_headers = slc::standard_headers();
+    base::ShadeopLibrary shadeops(parsed.options.shadeop_dirs);
+    slc::use_shadeops(parsed.options.object, shadeops);
+    base::Diag diag;
+    slc::report_shadeops(shadeops, diag);
     const Outcome outcome = process_all(parsed.options);
     base::finish_interrupt();
     return exit_code(outcome);

@@ -101,6 +101,9 @@ private:
         case Id::define:
             o.object.front.defines.push_back(value);
             break;
+        case Id::shadeops:
+            o.shadeop_dirs.push_back(value);
+            break;
         case Id::optimise:
             if (!parse_number(value, 0, 3, number)) {
                 result_.error = "-O wants 0 to 3";

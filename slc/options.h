@@ -27,6 +27,7 @@ struct Options {
     bool explain = false;
     bool help = false, version = false;
     unsigned jobs = std::max(1U, std::thread::hardware_concurrency());
+    std::vector<std::string> shadeop_dirs;
     std::vector<std::string> files;
 
     [[nodiscard]] bool makes_package() const { return output.ends_with(package_suffix); }

@@ -166,16 +166,14 @@ bool Checker::match_extras(Expr& e, const BuiltinRow& row, Type pvn, Candidate& 
     return true;
 }
 
-void Checker::match_row(Expr& e, int number, std::vector<Candidate>& out) {
-    const BuiltinRow& row = builtin_rows()[static_cast<std::size_t>(number)];
+// c says which row it is.
+void Checker::match_row(Expr& e, const BuiltinRow& row, Candidate c, std::vector<Candidate>& out) {
     const std::size_t fixed = row.args.size();
     const bool extras = row.repeats_last || row.takes_pairs || row.takes_values;
     if (e.args.size() < fixed || (e.args.size() > fixed && !extras) ||
         (row.takes_pairs && (e.args.size() - fixed) % 2 != 0)) {
         return;
     }
-    Candidate c;
-    c.builtin = number;
     const Type pvn = row.args.empty() ? Type::Point : pvn_kind(e, row);
     for (std::size_t i = 0; i < fixed; ++i) {
         if ((e.args[i]->channel != nullptr && !(i == 0 && row.has(PropChannel))) ||
@@ -197,7 +195,8 @@ void Checker::match_row(Expr& e, int number, std::vector<Candidate>& out) {
     out.push_back(c);
 }
 
-// User functions hide built-in functions, unless no user function takes the arguments.
+// User functions hide built-in functions, unless no user function takes the arguments. Functions of
+// DSOs come last: they may add forms to built-in ones, not replace any.
 std::vector<Checker::Candidate> Checker::candidates(Expr& e) {
     std::vector<Candidate> out;
     for (Function* f : scopes_.find_functions(e.text)) {
@@ -210,7 +209,14 @@ std::vector<Checker::Candidate> Checker::candidates(Expr& e) {
         return out;
     }
     for (const int row : find_builtins(e.text)) {
-        match_row(e, row, out);
+        Candidate c;
+        c.builtin = row;
+        match_row(e, builtin_rows()[static_cast<std::size_t>(row)], std::move(c), out);
+    }
+    for (const BuiltinRow* row : externals_.find(e.text)) {
+        Candidate c;
+        c.external = row;
+        match_row(e, *row, std::move(c), out);
     }
     for (const int row : find_builtins(e.text)) {
         if (out.empty()) {
@@ -300,7 +306,8 @@ std::string Checker::describe_args(Expr& e) {
 void Checker::no_candidate(Expr& e) {
     const auto rows = find_builtins(e.text);
     const bool is_user = !scopes_.find_functions(e.text).empty();
-    if (rows.empty() && !is_user) {
+    const auto& externals = externals_.find(e.text);
+    if (rows.empty() && externals.empty() && !is_user) {
         const bool is_open = std::any_of(open_functions_.begin(), open_functions_.end(),
                                          [&](const Function* f) { return f->name == e.text; });
         if (is_open) {
@@ -308,17 +315,24 @@ void Checker::no_candidate(Expr& e) {
                         " calls itself; there is no recursion in the Shading Language");
             return;
         }
-        const auto names = scopes_.function_names();
-        fail(e, "function " + quoted(e.text) + " is not defined" + spelling_hint(e.text, names));
+        const std::string hint = spelling_hint(e.text, scopes_.function_names());
+        fail(e, "function " + quoted(e.text) + " is not defined" +
+                    (hint.empty() ? "; if it is a function of a DSO, name the DSO's directory "
+                                    "with --shadeops (render: -shadeops)"
+                                  : hint));
         return;
     }
     std::string forms;
+    std::vector<const BuiltinRow*> all = externals;
     for (const int row : rows) {
+        all.push_back(&builtin_rows()[static_cast<std::size_t>(row)]);
+    }
+    for (const BuiltinRow* row : all) {
         if (forms.size() > 120) {
             forms += " ...";
             break;
         }
-        forms += " " + std::string(builtin_rows()[static_cast<std::size_t>(row)].signature);
+        forms += " " + std::string(row->signature);
     }
     fail(e, "no form of " + quoted(e.text) + " takes " + describe_args(e) +
                 (forms.empty() ? std::string() : "; forms:" + forms));
@@ -371,6 +385,7 @@ void Checker::settle_call(Expr& e, std::optional<Type> natural) {
     }
     e.type = best->result;
     e.builtin = best->builtin;
+    e.external = best->external;
     e.function = best->function;
     e.arg_types = best->arg_types;
     e.by_component = best->by_component;
@@ -424,7 +439,9 @@ void Checker::settle_arguments(Expr& e) {
             if (e.function != nullptr) {
                 return e.function->formals[i]->is_output;
             }
-            const auto& args = builtin_rows()[static_cast<std::size_t>(e.builtin)].args;
+            const auto& args = e.external != nullptr
+                                   ? e.external->args
+                                   : builtin_rows()[static_cast<std::size_t>(e.builtin)].args;
             return i < args.size() && args[i].is_output;
         };
         if (is_lvalue(arg) && is_output()) {

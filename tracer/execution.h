@@ -10,6 +10,7 @@
 #include "runtime/batch.h"
 #include "runtime/shader.h"
 #include "runtime/uniform_prints.h"
+#include "tracer/shadeop_call.h"
 #include "tracer/spaces.h"
 #include "tracer/stats.h"
 
@@ -19,6 +20,10 @@
 #include <span>
 #include <string>
 #include <vector>
+
+namespace base {
+class ShadeopLibrary;
+}
 
 namespace trace {
 
@@ -41,6 +46,7 @@ struct FrameContext {
     const geo::World* world = nullptr;
     const ShaderSet* shaders = nullptr;
     const LightSet* lights = nullptr;
+    base::ShadeopLibrary* shadeops = nullptr; // functions of DSOs; none: nothing is allowed
 };
 
 // Matrices found for the running batch, by the addresses of the names: emitted code asks once per
@@ -66,6 +72,7 @@ struct ThreadState {
     rt::ShadeBatch surface;
     rt::ShadeBatch volume;
     std::unique_ptr<PatternCache> patterns;        // of match()
+    std::vector<ShadeopItem> shadeops;             // functions of DSOs that were called
     std::vector<std::unique_ptr<LightRun>> lights; // by light, made on first use
     std::uint64_t batch_serial = 0;   // grows with every batch: stale light results are told by it
     std::string printed;              // printf of the bucket in work

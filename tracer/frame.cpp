@@ -91,7 +91,7 @@ public:
     [[nodiscard]] const Camera& camera() const { return camera_; }
     [[nodiscard]] FrameContext context() const {
         return {scene_,       spaces_,        tools_.strings, tools_.diag,
-                world_.get(), shaders_.get(), lights_.get()};
+                world_.get(), shaders_.get(), lights_.get(),  settings_.shadeops};
     }
     void add_stats(const Counters& counted) const {
         tools_.stats.add(counted, shaders_->names(), tick_rate_.seconds_per_tick());

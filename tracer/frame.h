@@ -18,6 +18,10 @@
 #include <utility>
 #include <vector>
 
+namespace base {
+class ShadeopLibrary;
+}
+
 namespace trace {
 
 class LiveDisplay;
@@ -36,7 +40,8 @@ struct RenderSettings {
     bool is_verbose = false;    // say what is being done
     bool keep_existing = false; // frames whose files are all there already are skipped (-safe)
     CheckpointSettings checkpoint;
-    LiveDisplay* live = nullptr; // shows frames while they render
+    LiveDisplay* live = nullptr;              // shows frames while they render
+    base::ShadeopLibrary* shadeops = nullptr; // functions of DSOs that shaders may call
 };
 
 // From good to bad.

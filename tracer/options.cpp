@@ -254,6 +254,11 @@ private:
                 o.shader_path.push_back(std::move(directory));
             }
             break;
+        case Id::shadeops:
+            for (std::string& directory : base::expand_search_path(values_[0], o.shadeop_path)) {
+                o.shadeop_path.push_back(std::move(directory));
+            }
+            break;
         case Id::display:
         case Id::servers:
             apply_show(row);

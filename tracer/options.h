@@ -25,8 +25,9 @@ struct RenderOptions {
     std::vector<std::pair<int, int>> frames; // ranges, first to last; empty: all
     std::string output;                      // "" = as the RIB says
     std::vector<std::string> shader_path;
-    std::vector<std::string> rib_texts; // -option
-    std::vector<std::string> files;     // "-" is standard input
+    std::vector<std::string> shadeop_path; // directories of DSOs
+    std::vector<std::string> rib_texts;    // -option
+    std::vector<std::string> files;        // "-" is standard input
     std::string stats_json, report, profile_shaders;
     std::vector<std::pair<int, int>> trace_pixels;
     CheckpointSettings checkpoint;

@@ -135,12 +135,14 @@ rib::Config reader_config(const trace::RenderOptions& options, base::Diag& diag)
 }
 
 // Shaders found as source are compiled for this machine only.
-slc::ObjectOptions compile_options(const std::string& index_dir, const rt::Cancelled& cancelled) {
+slc::ObjectOptions compile_options(const std::string& index_dir, const rt::Cancelled& cancelled,
+                                   base::ShadeopLibrary& shadeops) {
     slc::ObjectOptions options;
     options.native_only = true;
     options.index_dir = index_dir;
     options.front.cancelled = cancelled;
     options.front.standard_headers = slc::standard_headers();
+    slc::use_shadeops(options, shadeops);
     return options;
 }
 
@@ -229,7 +231,8 @@ trace::LiveSettings live_settings(const trace::RenderOptions& options, base::Dia
     return settings;
 }
 
-trace::RendererConfig renderer_config(const trace::RenderOptions& options, base::Diag& diag) {
+trace::RendererConfig renderer_config(const trace::RenderOptions& options,
+                                      base::ShadeopLibrary& shadeops, base::Diag& diag) {
     trace::RendererConfig config;
     config.settings.num_threads = options.num_threads;
     config.settings.progress = options.progress;
@@ -249,15 +252,16 @@ trace::RendererConfig renderer_config(const trace::RenderOptions& options, base:
     config.shaders.cache_dir = config.shaders.cache_bytes > 0 ? rt::default_cache_dir() : "";
     config.shaders.num_threads = base::thread_count(options.num_threads);
     config.shaders.interrupted = base::is_interrupted;
-    config.shaders.compile = [](const std::string& sl_path, base::Diag& said,
-                                const rt::Cancelled& cancelled) {
-        return slc::compile_to_bytes(sl_path, compile_options({}, cancelled), said);
+    config.settings.shadeops = &shadeops;
+    config.shaders.compile = [&shadeops](const std::string& sl_path, base::Diag& said,
+                                         const rt::Cancelled& cancelled) {
+        return slc::compile_to_bytes(sl_path, compile_options({}, cancelled, shadeops), said);
     };
-    config.shaders.cache_key =
-        [index_dir = config.shaders.cache_dir](const std::string& sl_path, base::Diag& said,
-                                               const rt::Cancelled& cancelled) {
-            return slc::object_key(sl_path, compile_options(index_dir, cancelled), said);
-        };
+    config.shaders.cache_key = [&shadeops, index_dir = config.shaders.cache_dir](
+                                   const std::string& sl_path, base::Diag& said,
+                                   const rt::Cancelled& cancelled) {
+        return slc::object_key(sl_path, compile_options(index_dir, cancelled, shadeops), said);
+    };
     config.shaders.specialise =
         [profile = config.profile_shaders](const sl_object& general,
                                            std::span<const rt::BoundValue> constants) {
@@ -402,7 +406,9 @@ int run(const trace::RenderOptions& options, const std::vector<const char*>& arg
     if (options.show) {
         live.start(); // early: the address can be opened while the scene is read
     }
-    trace::RendererConfig config = renderer_config(options, diag);
+    base::ShadeopLibrary shadeops(options.shadeop_path);
+    slc::report_shadeops(shadeops, diag);
+    trace::RendererConfig config = renderer_config(options, shadeops, diag);
     config.settings.live = &live;
     trace::Renderer renderer(std::move(config), diag);
     rib::Reader reader(renderer, diag, reader_config(options, diag));

@@ -8,6 +8,7 @@
 #include "tracer/messages.h"
 #include "tracer/pattern_cache.h"
 #include "tracer/pixel_trace.h"
+#include "tracer/shadeop_call.h"
 #include "tracer/shader_profile.h"
 #include "tracer/shader_set.h"
 
@@ -142,12 +143,11 @@ int32_t match(void* engine, sl_string pattern, sl_string subject) {
     return match_pattern(of(engine), pattern, subject) ? 1 : 0;
 }
 
-void shadeop(void* engine, sl_string function, uint32_t /*first*/, uint32_t /*mask*/,
-             const sl_value* /*outputs*/, int32_t /*num_outputs*/, const sl_value* /*inputs*/,
-             int32_t /*num_inputs*/) {
-    report_shader(of(engine), base::Severity::Warning, 0,
-                  "function \"" + std::string(function) +
-                      "\" of a DSO is not at hand; its results stay as they are");
+void shadeop(void* engine, sl_string function, uint32_t /*first*/, uint32_t mask,
+             const sl_value* outputs, int32_t num_outputs, const sl_value* inputs,
+             int32_t num_inputs) {
+    call_shadeop(of(engine), function, mask, {outputs, static_cast<std::size_t>(num_outputs)},
+                 {inputs, static_cast<std::size_t>(num_inputs)});
 }
 
 // A light runs for whole packets, of which some lanes only were asked about: those print.

@@ -2,6 +2,7 @@
 // One call of a built-in function being put together; private to the emitter's files.
 #pragma once
 
+#include "slc/builtins.h"
 #include "slc/emit_common.h"
 
 #include <string>

@@ -29,7 +29,7 @@ struct LightInfo {
     std::vector<std::string> categories; // of its __category
     int nondiffuse = -1;                 // parameter __nondiffuse, or -1
     int nonspecular = -1;
-    bool reusable = true;     // the same point gives the same result: no random() inside
+    bool reusable = true;     // the same point gives the same result: no random(), no messages
     bool is_constant = false; // every point gives the same result
 };
 

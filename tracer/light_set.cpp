@@ -49,8 +49,7 @@ void read_facts(LightInfo& info) {
     info.directional = (object.facts & SL_FACT_directional) != 0;
     info.from_infinity = (object.facts & SL_FACT_solar) != 0;
     // Messages may have another answer a moment later.
-    info.reusable =
-        (object.facts & (SL_FACT_random | SL_FACT_traces | SL_FACT_attributes)) == 0;
+    info.reusable = (object.facts & (SL_FACT_random | SL_FACT_traces | SL_FACT_attributes)) == 0;
     info.is_constant = is_constant(object);
     info.nondiffuse = find_param(shader, "__nondiffuse", SL_TYPE_float);
     info.nonspecular = find_param(shader, "__nonspecular", SL_TYPE_float);

@@ -200,7 +200,8 @@ private:
             return false;
         }
         if (!predefined && of_shader == shader_outputs_.end()) {
-            warn("no displacement, surface or atmosphere shader of the scene has an output parameter \"" +
+            warn("no displacement, surface or atmosphere shader of the scene has an output "
+                 "parameter \"" +
                  std::string(variable) + "\"; its channels are 0");
         }
         out = *decl;

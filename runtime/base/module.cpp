@@ -3,6 +3,7 @@
 
 #include <dlfcn.h>
 #include <filesystem>
+#include <utility>
 
 namespace base {
 
@@ -43,6 +44,28 @@ ModuleSymbol open_module(const std::string& name, const char* symbol) {
         return {address, address != nullptr ? std::string() : last_error()};
     }
     return {nullptr, "the part " + file + " of the installation is missing"};
+}
+
+// A path with a slash is opened as it is, never looked for elsewhere.
+Dso::Dso(const std::string& path)
+    : path_(path), handle_(::dlopen(fs::absolute(path).c_str(), RTLD_NOW | RTLD_LOCAL)) {
+    if (handle_ == nullptr) {
+        error_ = last_error();
+    }
+}
+
+Dso::~Dso() {
+    if (handle_ != nullptr) {
+        ::dlclose(handle_);
+    }
+}
+
+Dso::Dso(Dso&& other) noexcept
+    : path_(std::move(other.path_)), error_(std::move(other.error_)),
+      handle_(std::exchange(other.handle_, nullptr)) {}
+
+void* Dso::symbol(const std::string& name) const {
+    return handle_ != nullptr ? ::dlsym(handle_, name.c_str()) : nullptr;
 }
 
 } // namespace base

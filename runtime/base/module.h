@@ -19,4 +19,23 @@ struct ModuleSymbol {
 // the program (build tree). Thread-safe.
 [[nodiscard]] ModuleSymbol open_module(const std::string& name, const char* symbol);
 
+// A shared library that the user allowed; closed with the object.
+class Dso {
+public:
+    // With the reason in error() if it cannot be opened.
+    explicit Dso(const std::string& path);
+    ~Dso();
+    Dso(Dso&& other) noexcept;
+    Dso& operator=(Dso&&) = delete;
+
+    [[nodiscard]] const std::string& path() const { return path_; }
+    [[nodiscard]] const std::string& error() const { return error_; }
+    // nullptr: it has no such symbol.
+    [[nodiscard]] void* symbol(const std::string& name) const;
+
+private:
+    std::string path_, error_;
+    void* handle_ = nullptr;
+};
+
 } // namespace base

@@ -2,11 +2,11 @@
 #include "runtime/base/shadeops.h"
 
 #include "runtime/abi/sl_shadeop.h"
+#include "runtime/base/module.h"
 
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <dlfcn.h>
 #include <filesystem>
 #include <map>
 #include <mutex>
@@ -180,10 +180,6 @@ void Shadeop::call(std::span<void* const> values) const {
 struct ShadeopLibrary::Impl {
     std::mutex mutex;
     bool is_open = false;
-    struct Dso {
-        std::string path;
-        void* handle;
-    };
     std::vector<Dso> dsos;
     std::map<std::string, std::vector<Shadeop>, std::less<>> functions;
     std::map<std::string, bool, std::less<>> looked_for; // names of the older form
@@ -207,10 +203,6 @@ ShadeopLibrary::~ShadeopLibrary() {
                 reinterpret_cast<void (*)(void*)>(f.cleanup_)(f.run_->data);
             }
         }
-    }
-    impl_->functions.clear();
-    for (const Impl::Dso& dso : impl_->dsos) {
-        ::dlclose(dso.handle);
     }
 }
 
@@ -244,16 +236,15 @@ void ShadeopLibrary::Impl::open(const std::vector<std::string>& directories) {
 }
 
 void ShadeopLibrary::Impl::open_file(const std::string& path) {
-    // A path with a slash is opened as it is, never looked for elsewhere.
-    void* handle = ::dlopen(std::filesystem::absolute(path).c_str(), RTLD_NOW | RTLD_LOCAL);
-    if (handle == nullptr) {
-        problems.push_back("cannot open " + path + ": " + ::dlerror());
+    Dso dso(path);
+    if (!dso.error().empty()) {
+        problems.push_back("cannot open " + path + ": " + dso.error());
         return;
     }
-    dsos.push_back({path, handle});
-    if (const void* table = ::dlsym(handle, "sl_shadeops")) {
-        take_table(dsos.back(), *static_cast<const sl_shadeop_table*>(table));
+    if (const void* table = dso.symbol("sl_shadeops")) {
+        take_table(dso, *static_cast<const sl_shadeop_table*>(table));
     }
+    dsos.push_back(std::move(dso));
 }
 
 void ShadeopLibrary::Impl::add(Shadeop shadeop, const Dso& dso) {
@@ -262,21 +253,22 @@ void ShadeopLibrary::Impl::add(Shadeop shadeop, const Dso& dso) {
                              (shadeop.result_ == SL_TYPE_void ? 0 : 1);
     if (shadeop.arguments_.size() >= SL_SHADEOP_MAX_ARGUMENTS ||
         num_outputs > SL_SHADEOP_MAX_OUTPUTS) {
-        problems.push_back(dso.path + ": " + shadeop.name_ + " has too many arguments or outputs");
+        problems.push_back(dso.path() + ": " + shadeop.name_ +
+                           " has too many arguments or outputs");
         return;
     }
-    shadeop.file_ = dso.path;
+    shadeop.file_ = dso.path();
     shadeop.signature_ = shadeop.signature_text();
     shadeop.run_ = std::make_shared<Shadeop::Run>();
     auto& overloads = functions[shadeop.name_];
-    if (overloads.empty() || overloads.front().file_ == dso.path) {
+    if (overloads.empty() || overloads.front().file_ == dso.path()) {
         overloads.push_back(std::move(shadeop));
     }
 }
 
 void ShadeopLibrary::Impl::take_table(const Dso& dso, const sl_shadeop_table& table) {
     if (table.version != SL_SHADEOP_VERSION) {
-        problems.push_back(dso.path + ": its table has version " + std::to_string(table.version) +
+        problems.push_back(dso.path() + ": its table has version " + std::to_string(table.version) +
                            ", not " + std::to_string(SL_SHADEOP_VERSION));
         return;
     }
@@ -284,7 +276,8 @@ void ShadeopLibrary::Impl::take_table(const Dso& dso, const sl_shadeop_table& ta
         const sl_shadeop& row = table.functions[i];
         Shadeop shadeop;
         if (row.signature == nullptr || row.function == nullptr || !shadeop.parse(row.signature)) {
-            problems.push_back(dso.path + ": \"" + (row.signature != nullptr ? row.signature : "") +
+            problems.push_back(dso.path() + ": \"" +
+                               (row.signature != nullptr ? row.signature : "") +
                                "\" is no signature of a function");
             continue;
         }
@@ -303,29 +296,29 @@ struct ClassicRow {
     const char* shutdown;
 };
 
-void* symbol(void* handle, const char* name) {
-    return name != nullptr && name[0] != 0 ? ::dlsym(handle, name) : nullptr;
+void* symbol(const Dso& dso, const char* name) {
+    return name != nullptr && name[0] != 0 ? dso.symbol(name) : nullptr;
 }
 
 } // namespace
 
 void ShadeopLibrary::Impl::take_classic(const Dso& dso, std::string_view name) {
     const std::string table = std::string(name) + "_shadeops";
-    const auto* row = static_cast<const ClassicRow*>(::dlsym(dso.handle, table.c_str()));
+    const auto* row = static_cast<const ClassicRow*>(dso.symbol(table));
     for (; row != nullptr && row->definition != nullptr && row->definition[0] != 0; ++row) {
         Shadeop shadeop;
         const bool is_good = shadeop.parse_classic(row->definition);
-        void* const function = is_good ? symbol(dso.handle, shadeop.name_.c_str()) : nullptr;
+        void* const function = is_good ? dso.symbol(shadeop.name_) : nullptr;
         if (function == nullptr) {
-            problems.push_back(dso.path + ": \"" + row->definition + "\" in " + table +
+            problems.push_back(dso.path() + ": \"" + row->definition + "\" in " + table +
                                " is no declaration of a function that it has");
             continue;
         }
         shadeop.form_ = Shadeop::Form::Classic;
         shadeop.name_ = name;
         shadeop.function_ = function;
-        shadeop.init_ = symbol(dso.handle, row->init);
-        shadeop.cleanup_ = symbol(dso.handle, row->shutdown);
+        shadeop.init_ = symbol(dso, row->init);
+        shadeop.cleanup_ = symbol(dso, row->shutdown);
         add(std::move(shadeop), dso);
     }
 }

@@ -56,6 +56,7 @@ std::uint64_t results_of(sl_shader_type type) {
     case SL_SHADER_volume:
         return bits({SL_VAR_Ci, SL_VAR_Oi});
     case SL_SHADER_displacement:
+        return bits({SL_VAR_P, SL_VAR_N, SL_VAR_s, SL_VAR_t});
     case SL_SHADER_transformation:
         return bits({SL_VAR_P, SL_VAR_N});
     case SL_SHADER_light:

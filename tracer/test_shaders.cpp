@@ -88,8 +88,8 @@ sl_status lit(const sl_batch* batch, std::uint32_t first, std::uint32_t count, s
     for (int pass = 0; pass < 2; ++pass) {
         for (int index = 0; index < batch->services->light_count(batch->engine); ++index) {
             sl_light_result result;
-            const sl_light_query query = {index,   first, lanes,    mask,           P,
-                                          nullptr, N,     cosangle, block->category};
+            const sl_light_query query = {index,    first,           lanes, mask, P, nullptr, N,
+                                          cosangle, block->category, 0,     0,    0, nullptr};
             const std::uint32_t reached = batch->services->light(batch->engine, &query, &result);
             for (std::uint32_t i = 0; i < count; ++i) {
                 if ((reached >> i & 1U) == 0) {

@@ -154,8 +154,9 @@ double compile_seconds(std::size_t num_statements) {
 
 // The compiler's order for an object, as the runtime knows it.
 std::optional<rt::SpecialShader>
-special_shader(const sl_object& general, std::span<const rt::BoundValue> constants, bool profile) {
-    slc::ObjectOptions options = compile_options({}, {});
+special_shader(const sl_object& general, std::span<const rt::BoundValue> constants, bool profile,
+               base::ShadeopLibrary& shadeops) {
+    slc::ObjectOptions options = compile_options({}, {}, shadeops);
     options.profile = profile;
     std::vector<slc::ConstantParam> params;
     params.reserve(constants.size());
@@ -263,9 +264,9 @@ trace::RendererConfig renderer_config(const trace::RenderOptions& options,
         return slc::object_key(sl_path, compile_options(index_dir, cancelled, shadeops), said);
     };
     config.shaders.specialise =
-        [profile = config.profile_shaders](const sl_object& general,
-                                           std::span<const rt::BoundValue> constants) {
-            return special_shader(general, constants, profile);
+        [&shadeops, profile = config.profile_shaders](const sl_object& general,
+                                                      std::span<const rt::BoundValue> constants) {
+            return special_shader(general, constants, profile, shadeops);
         };
     config.shaders.path_first = options.shader_path;
     return config;

@@ -153,9 +153,9 @@ double compile_seconds(std::size_t num_statements) {
 }
 
 // The compiler's order for an object, as the runtime knows it.
-std::optional<rt::SpecialShader>
-special_shader(const sl_object& general, std::span<const rt::BoundValue> constants, bool profile,
-               base::ShadeopLibrary& shadeops) {
+std::optional<rt::SpecialShader> special_shader(const sl_object& general,
+                                                std::span<const rt::BoundValue> constants,
+                                                bool profile, base::ShadeopLibrary& shadeops) {
     slc::ObjectOptions options = compile_options({}, {}, shadeops);
     options.profile = profile;
     std::vector<slc::ConstantParam> params;

@@ -20,15 +20,26 @@ bool by_library(const std::string& pattern, const std::string& subject, bool& va
 }
 
 TEST(Pattern, AgreesWithTheLibrary) {
-    for (const char* pattern : {"",           "a",        "^a.c$",      "a*b",      "*a",
-                                "^*a",        "\\(*a\\)",        "a+b",      "a\\+b",
-                                "a\\?b",      "(a)",      "\\(ab\\)*c", "a\\{2\\}", "a\\{2,\\}b",
-                                "a\\{1,2\\}", "a|b",      "a\\|b",      "[abc]",    "[^abc]",
-                                "[]a]",       "[^]a]",    "[a-c]x",     "[a\\]",    "[[:digit:]]*$",
-                                "[[.a.]]",    "a^b",      "a$b",        "$",        "^$",
-                                "\\.",        "\\$",      "\\^",        "\\*",      "wood.*[0-9]$",
-                                "{",          "a{2}",     "\\(^a\\)",   "\\(a$\\)", "x\\|^a",
-                                "[b-]"}) {
+    for (const char* pattern : {"",           "a",
+                                "^a.c$",      "a*b",
+                                "*a",         "^*a",
+                                "\\(*a\\)",   "a+b",
+                                "a\\+b",      "a\\?b",
+                                "(a)",        "\\(ab\\)*c",
+                                "a\\{2\\}",   "a\\{2,\\}b",
+                                "a\\{1,2\\}", "a|b",
+                                "a\\|b",      "[abc]",
+                                "[^abc]",     "[]a]",
+                                "[^]a]",      "[a-c]x",
+                                "[a\\]",      "[[:digit:]]*$",
+                                "[[.a.]]",    "a^b",
+                                "a$b",        "$",
+                                "^$",         "\\.",
+                                "\\$",        "\\^",
+                                "\\*",        "wood.*[0-9]$",
+                                "{",          "a{2}",
+                                "\\(^a\\)",   "\\(a$\\)",
+                                "x\\|^a",     "[b-]"}) {
         const base::Pattern mine(pattern);
         EXPECT_EQ(mine.error(), "") << pattern;
         for (const char* subject :

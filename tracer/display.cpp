@@ -17,10 +17,9 @@ namespace {
 
 // Display types that are no file formats (ri.md 6.4).
 enum class Special : std::uint8_t {
-    File,   // by the suffix of the name, TIFF without a known one
-    Null,   // asked to write nothing
-    Window, // a picture on a screen
-    DepthMap
+    File,  // by the suffix of the name, TIFF without a known one
+    Null,  // asked to write nothing
+    Window // a picture on a screen
 };
 
 struct SpecialRow {
@@ -28,13 +27,9 @@ struct SpecialRow {
     Special what;
 };
 constexpr SpecialRow specials[] = {
-    {"file", Special::File},          {"null", Special::Null},
-    {"framebuffer", Special::Window}, {"fb", Special::Window},
-    {"it", Special::Window},          {"x11", Special::Window},
-    {"piqsl", Special::Window},       {"zframebuffer", Special::Window},
-    {"rgl", Special::Window},         {"shadow", Special::DepthMap},
-    {"deepshad", Special::DepthMap},  {"dsm", Special::DepthMap},
-    {"tsm", Special::DepthMap},
+    {"file", Special::File},    {"null", Special::Null},           {"framebuffer", Special::Window},
+    {"fb", Special::Window},    {"it", Special::Window},           {"x11", Special::Window},
+    {"piqsl", Special::Window}, {"zframebuffer", Special::Window}, {"rgl", Special::Window},
 };
 
 const SpecialRow* find_special(std::string_view name) {
@@ -82,7 +77,6 @@ public:
 
 private:
     bool choose_format();
-    void warn_special(Special what);
     bool choose_channels();
     void choose_parameters();
     void fit();
@@ -113,21 +107,12 @@ bool DisplayWriter::choose_format() {
         const bool is_default = format_ == &default_format();
         warn(base::Code::Unimplement, "type \"" + display_.type + "\" is not known; writing " +
                                           path_ + (is_default ? " as TIFF" : ""));
-    } else if (format_ == nullptr) {
-        warn_special(find_special(display_.type)->what);
+    } else if (format_ != nullptr && format_->writer == Writer::Shadow &&
+               display_.type != "shadow" && display_.type != "file") {
+        warn(base::Code::Incapable,
+             "type \"" + display_.type + "\" holds the depth of what is opaque only");
     }
     return format_ != nullptr;
-}
-
-void DisplayWriter::warn_special(Special what) {
-    switch (what) {
-    case Special::File:
-    case Special::Null:
-    case Special::Window: // of live_display.h
-        return;
-    case Special::DepthMap:
-        warn(base::Code::Unimplement, "type \"" + display_.type + "\" is not written yet");
-    }
 }
 
 bool DisplayWriter::choose_channels() {
@@ -203,6 +188,8 @@ WriteOutcome DisplayWriter::write_format(OutputFile& file) const {
         return write_exr(picture_, file);
     case Writer::Zfile:
         return write_zfile(picture_, file);
+    case Writer::Shadow:
+        return write_shadow_map(picture_, file);
     case Writer::Oiio:
         return write_oiio(picture_, *format_, file);
     }
@@ -327,10 +314,8 @@ rib::Display default_display(std::string file, std::string mode) {
 }
 
 bool writes_depth_map(const rib::Display& display) {
-    const SpecialRow* special = find_special(display.type);
-    const FormatRow* format = format_of_type(display.type);
-    return (special != nullptr && special->what == Special::DepthMap) ||
-           (format != nullptr && format->channels == FormatRow::Channels::Depth);
+    const FormatRow* format = target_of(display).format;
+    return format != nullptr && format->channels == FormatRow::Channels::Depth;
 }
 
 DisplayResult write_display(const DisplayPlan& plan, const Image& image, const PictureInfo& info,

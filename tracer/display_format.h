@@ -75,7 +75,7 @@ private:
 
 // --- formats: display_formats.def
 
-enum class Writer : std::uint8_t { Tiff, Png, Exr, Zfile, Oiio };
+enum class Writer : std::uint8_t { Tiff, Png, Exr, Zfile, Shadow, Oiio };
 struct FormatRow {
     enum class Numbers : std::uint8_t { Any, Byte, Word, Float };
     enum class Channels : std::uint8_t { Any, Picture, Rgb, Depth };
@@ -106,6 +106,7 @@ struct FitResult {
 [[nodiscard]] WriteOutcome write_png(const FilePicture& picture, OutputFile& file);
 [[nodiscard]] WriteOutcome write_exr(const FilePicture& picture, OutputFile& file);
 [[nodiscard]] WriteOutcome write_zfile(const FilePicture& picture, OutputFile& file);
+[[nodiscard]] WriteOutcome write_shadow_map(const FilePicture& picture, OutputFile& file);
 [[nodiscard]] WriteOutcome write_oiio(const FilePicture& picture, const FormatRow& format,
                                       OutputFile& file);
 // Why there is no OpenImageIO; "" if there is.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pixar's zfile: depth of every pixel as float, with the matrices a shadow map needs. A header of
-// magic number, width and height (16 bits), world-to-screen and world-to-camera (row vectors), then
-// the rows from the top; native byte order, which readers tell by the magic number.
+// Display type "zfile": depth of every pixel as float, with the matrices a shadow map needs
+// (zfile.h).
 #include "tracer/display_format.h"
+#include "tracer/zfile.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -11,16 +11,6 @@
 namespace trace {
 
 namespace {
-
-constexpr std::uint32_t zfile_magic = 0x2f0867ab;
-
-struct ZfileHeader {
-    std::uint32_t magic = zfile_magic;
-    std::int16_t width = 0, height = 0;
-    float screen_from_world[16] = {};
-    float camera_from_world[16] = {};
-};
-static_assert(sizeof(ZfileHeader) == 136);
 
 void put(const base::Mat4& m, float* out) {
     for (int i = 0; i < 16; ++i) {

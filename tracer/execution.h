@@ -35,6 +35,7 @@ class PatternCache;
 struct LightList;
 class PixelTrace;
 class ShaderProfile;
+class TextureFrame;
 
 // Immutable for the frame, shared by all threads. world, shaders and lights are null while shaders
 // are bound.
@@ -47,6 +48,7 @@ struct FrameContext {
     const ShaderSet* shaders = nullptr;
     const LightSet* lights = nullptr;
     base::ShadeopLibrary* shadeops = nullptr; // functions of DSOs; none: nothing is allowed
+    const TextureFrame* textures = nullptr;   // null while shaders are bound
 };
 
 // Matrices found for the running batch, by the addresses of the names: emitted code asks once per

@@ -24,6 +24,7 @@
 #include "tracer/shader_set.h"
 #include "tracer/shading_classes.h"
 #include "tracer/specialise.h"
+#include "tracer/texture_frame.h"
 
 #include <algorithm>
 #include <atomic>
@@ -73,6 +74,13 @@ public:
           spaces_(scene, {camera_.screen_from_camera(), camera_.ndc_from_screen(),
                           camera_.raster_from_screen()}) {
         report_not_done(scene, tools.diag);
+        if (tools.textures == nullptr) {
+            own_textures_ = std::make_unique<Textures>();
+        }
+        const Space* world = spaces_.find("world");
+        textures_ = std::make_unique<TextureFrame>(
+            own_textures_ ? *own_textures_ : *tools.textures, scene.options,
+            world != nullptr ? world->space_from_camera : base::Mat4{});
         {
             const PhaseTimer timer(tools.stats, Phase::shaders);
             shaders_ = std::make_unique<ShaderSet>(
@@ -90,8 +98,8 @@ public:
 
     [[nodiscard]] const Camera& camera() const { return camera_; }
     [[nodiscard]] FrameContext context() const {
-        return {scene_,       spaces_,        tools_.strings, tools_.diag,
-                world_.get(), shaders_.get(), lights_.get(),  settings_.shadeops};
+        return {scene_,         spaces_,       tools_.strings,     tools_.diag,    world_.get(),
+                shaders_.get(), lights_.get(), settings_.shadeops, textures_.get()};
     }
     void add_stats(const Counters& counted) const {
         tools_.stats.add(counted, shaders_->names(), tick_rate_.seconds_per_tick());
@@ -116,6 +124,7 @@ private:
                                const std::vector<std::size_t>& order, PixelTrace* trace) const;
     [[nodiscard]] Specialiser::Settings special_settings(bool is_traced) const;
     void add_world_stats() const;
+    void write_baked(bool wanted) const;
     void add_film_stats(const Film& film) const;
 
     const rib::Scene& scene_;
@@ -124,6 +133,8 @@ private:
     base::TickRate tick_rate_;
     Camera camera_;
     Spaces spaces_;
+    std::unique_ptr<Textures> own_textures_;
+    std::unique_ptr<TextureFrame> textures_;
     std::unique_ptr<ShaderSet> shaders_;
     std::unique_ptr<LightSet> lights_;
     std::unique_ptr<ShadingClasses> classes_;
@@ -191,6 +202,7 @@ FrameResult Frame::render(Image& image, const Company& company) const {
         trace->finish(sampler, weights, film->image());
     }
     add_film_stats(*film);
+    write_baked(result == FrameResult::Done && trace == nullptr);
     if (checkpoint != nullptr) {
         checkpoint->finish();
     }
@@ -278,6 +290,19 @@ void Frame::add_world_stats() const {
         static_cast<std::uint64_t>(base::thread_count(settings_.num_threads));
 }
 
+// Files of bake() and bake3d(); those of an unfinished frame would lack samples.
+void Frame::write_baked(bool wanted) const {
+    PointFiles& points = textures_->textures().points();
+    if (!wanted) {
+        points.discard();
+        return;
+    }
+    for (const PointFiles::Failure& failure : points.write()) {
+        tools_.diag.report(base::Severity::Severe, base::Code::System, {},
+                           "cannot write the samples of " + failure.path + ": " + failure.why);
+    }
+}
+
 void Frame::add_film_stats(const Film& film) const {
     std::uint64_t num_pixels = 0;
     for (std::size_t bucket = 0; bucket < film.num_buckets(); ++bucket) {
@@ -292,6 +317,9 @@ void Frame::add_film_stats(const Film& film) const {
     }
     tools_.stats.amounts[Amount::sample_pixels] = num_pixels;
     tools_.stats.amounts[Amount::film_bytes] = bytes;
+    const Textures::Memory maps = textures_->textures().memory();
+    tools_.stats.amounts[Amount::texture_bytes] = maps.tile_bytes + maps.map_bytes;
+    tools_.stats.amounts[Amount::texture_read_bytes] = maps.bytes_read;
 }
 
 // The displays of the frame; a scene that names none gets the default one. Where all are windows

@@ -26,6 +26,7 @@ namespace trace {
 
 class LiveDisplay;
 class ShaderListing;
+class Textures;
 
 struct RenderSettings {
     int num_threads = 0; // 0: all
@@ -55,6 +56,7 @@ struct FrameTools {
     Stats& stats;
     ShaderListing* listing = nullptr; // --profile-shaders
     Preview* preview = nullptr;       // a small picture of the first display, for reports
+    Textures* textures = nullptr;     // the maps of the run; null: of this frame only
 };
 
 // The filtered picture, before exposure and imager; for tests and other users of the picture.

@@ -5,9 +5,7 @@
 #include "tracer/oiio_module.h"
 
 #include "runtime/base/temp_dir.h"
-
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
+#include "tracer/oiio_library.h"
 
 #include <cstdio>
 #include <exception>

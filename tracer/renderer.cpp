@@ -5,7 +5,7 @@
 #include "tracer/shader_set.h"
 
 #include <algorithm>
-#include <filesystem>
+#include <optional>
 
 namespace trace {
 
@@ -73,10 +73,10 @@ FrameResult Renderer::render_recorded(const rib::Scene& scene) {
     frame.number = scene.options.frame;
     frame.is_numbered = scene.options.in_frame;
     frame.options = frame_options(scene.options);
-    const FrameResult result = render_frame(scene, config_.settings,
-                                            {library_, strings_, diag_, frame.stats,
-                                             config_.profile_shaders ? &listing_ : nullptr,
-                                             config_.keep_previews ? &frame.preview : nullptr});
+    const FrameResult result = render_frame(
+        scene, config_.settings,
+        {library_, strings_, diag_, frame.stats, config_.profile_shaders ? &listing_ : nullptr,
+         config_.keep_previews ? &frame.preview : nullptr, &textures_});
     note_directories(scene);
     frame.result = result_text(result);
     add_library_stats(frame.stats);
@@ -160,32 +160,84 @@ RunRecord& Renderer::finish() {
 
 namespace {
 
-// As written, or in a directory of the texture path.
-bool source_exists(const std::string& name, const rib::Options& options) {
-    std::error_code error;
-    if (std::filesystem::exists(name, error)) {
-        return true;
+struct MakeRow {
+    std::string_view request;
+    MapKind kind;
+};
+constexpr MakeRow make_rows[] = {
+    {"MakeTexture", MapKind::Texture},
+    {"MakeBump", MapKind::Texture},
+    {"MakeLatLongEnvironment", MapKind::LatLong},
+    {"MakeCubeFaceEnvironment", MapKind::Cube},
+    {"MakeShadow", MapKind::Shadow},
+    {"MakeOcclusion", MapKind::Occlusion},
+    {"MakeBrickMap", MapKind::Points},
+};
+
+// The order of arguments is that of ri_requests.def: strings end with the filter, after the wrap
+// modes; the field of view of a cube comes first among the numbers.
+MakeRequest make_request(const rib::TextureRequest& request, MapKind kind) {
+    MakeRequest make;
+    make.kind = kind;
+    make.sources.assign(request.files.begin(), request.files.end() - 1);
+    make.target = request.files.back();
+    if (!request.strings.empty()) {
+        make.filter = request.strings.back();
     }
-    const std::vector<std::string> path = rib::search_directories(options, "texture");
-    return std::any_of(path.begin(), path.end(), [&](const std::string& directory) {
-        return std::filesystem::exists(std::filesystem::path(directory) / name, error);
-    });
+    if (request.strings.size() == 3) {
+        make.smode = request.strings[0];
+        make.tmode = request.strings[1];
+    }
+    if (kind == MapKind::Cube && !request.floats.empty()) {
+        make.fov_deg = static_cast<double>(request.floats.front());
+    }
+    return make;
 }
 
 } // namespace
 
-bool Renderer::make_texture(const rib::TextureRequest& request) {
-    for (std::size_t i = 0; i + 1 < request.files.size(); ++i) { // the last one is the result
-        if (!source_exists(request.files[i], request.options)) {
+bool Renderer::find_sources(const rib::TextureRequest& request, MakeRequest& make) {
+    const std::vector<std::string> path = rib::search_directories(request.options, "texture");
+    for (std::string& source : make.sources) {
+        const std::optional<std::string> found = find_map(source, path);
+        if (!found) {
             diag_.report(base::Severity::Error, base::Code::NoFile, request.pos,
-                         request.kind + ": cannot read " + request.files[i] +
-                             "; no texture is made");
-            return true;
+                         request.kind + ": cannot read " + source + "; " + make.target +
+                             " is not made");
+            return false;
         }
+        source = *found;
     }
-    diag_.report_once("texture:" + request.kind, base::Severity::Info, base::Code::Unimplement,
-                      request.pos,
-                      request.kind + ": textures are not made yet; the request is ignored");
+    return true;
+}
+
+bool Renderer::make_texture(const rib::TextureRequest& request) {
+    const auto* row =
+        std::ranges::find(make_rows, std::string_view(request.kind), &MakeRow::request);
+    if (row == std::end(make_rows) || request.files.size() < 2) {
+        return false;
+    }
+    MakeRequest make = make_request(request, row->kind);
+    if (!find_sources(request, make)) {
+        return true;
+    }
+    const MakeOutcome outcome = make_map(make);
+    for (const std::string& note : outcome.notes) {
+        diag_.report(base::Severity::Warning, base::Code::BadToken, request.pos,
+                     request.kind + ": " + note);
+    }
+    if (!outcome.made) {
+        diag_.report(outcome.environment ? base::Severity::Severe : base::Severity::Error,
+                     outcome.environment ? base::Code::System : base::Code::BadFile, request.pos,
+                     request.kind + ": " + outcome.error + "; " + make.target + " is not made");
+        result_ = outcome.environment ? FrameResult::Failed : result_;
+        return true;
+    }
+    textures_.changed(make.target);
+    if (config_.is_verbose || verbosity_of(request.options) == Verbosity::Debug) {
+        diag_.report(base::Severity::Info, base::Code::None, request.pos,
+                     request.kind + ": made " + make.target);
+    }
     return true;
 }
 

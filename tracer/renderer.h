@@ -9,6 +9,8 @@
 #include "tracer/frame_statistics.h"
 #include "tracer/run_record.h"
 #include "tracer/shader_profile.h"
+#include "tracer/texture_make.h"
+#include "tracer/textures.h"
 
 #include <array>
 #include <chrono>
@@ -59,11 +61,14 @@ private:
     rt::ShaderLibrary library_;
 
     FrameResult render_recorded(const rib::Scene& scene);
+    // False: one is missing, which was said.
+    bool find_sources(const rib::TextureRequest& request, MakeRequest& make);
 
     void note_directories(const rib::Scene& scene);
     void add_library_stats(Stats& stats);
     void say_what_is_done(const rib::Options& options);
 
+    Textures textures_;
     RunRecord run_;
     ShaderListing listing_;
     std::vector<std::string> shader_directories_; // of the frames' search paths

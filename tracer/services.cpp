@@ -11,8 +11,10 @@
 #include "tracer/shadeop_call.h"
 #include "tracer/shader_profile.h"
 #include "tracer/shader_set.h"
+#include "tracer/texture_frame.h"
 
 #include <algorithm>
+#include <bit>
 #include <string_view>
 
 namespace trace {
@@ -204,32 +206,116 @@ void depth_range(void* engine, float* near_far) {
 
 // --- maps
 
-// An unreadable map gives the fill value (sl.md 4.7); shadows and flat bump maps give 0.
-void map(void* engine, const sl_map_query* query, float* result) {
-    report_shader(of(engine), base::Severity::Warning, 0,
-                  "maps are not read in this version; the fill value stands for them");
-    const bool fills = query->kind == SL_MAP_texture || query->kind == SL_MAP_environment;
-    for (std::uint32_t lane = 0; lane < query->lanes; ++lane) {
-        for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(query->num_channels); ++k) {
-            result[k * query->lanes + lane] = fills ? query->option[SL_MAP_OPTION_fill][lane] : 0;
+// Once per map and mistake, whichever shader met it first.
+void report_map(const Execution& execution, const std::string& text) {
+    execution.frame.diag.report_once("map: " + text, base::Severity::Error, base::Code::NoFile,
+                                     execution.running.pos,
+                                     "shader \"" + execution.running.name + "\": " + text);
+}
+
+ShadowBias bias_of(const Execution& execution) {
+    const rib::Attributes* attributes = attributes_of(execution);
+    if (attributes != nullptr && !attributes->user.empty()) {
+        if (const ShadowBias bias = shadow_bias(*attributes->user); bias.given) {
+            return bias;
         }
+    }
+    return execution.frame.textures->default_bias();
+}
+
+Counter counter_of(int kind) {
+    switch (kind) {
+    case SL_MAP_shadow:
+    case SL_MAP_occlusion:
+        return Counter::map_shadow;
+    case SL_MAP_environment:
+    case SL_MAP_irradiance:
+        return Counter::map_environment;
+    default:
+        return Counter::map_texture;
     }
 }
 
-int32_t map_info(void* /*engine*/, sl_string /*name*/, sl_string /*key*/, int32_t /*type*/,
-                 int32_t /*array_length*/, void* /*value*/) {
-    return 0;
+void map(void* engine, const sl_map_query* query, float* result) {
+    const Execution& execution = of(engine);
+    if (execution.frame.textures == nullptr || execution.thread == nullptr) {
+        return; // parameters are being bound: there are no maps yet
+    }
+    execution.thread->counters.add(counter_of(query->kind),
+                                   static_cast<std::uint64_t>(std::popcount(query->mask)));
+    const bool is_shadow = query->kind == SL_MAP_shadow || query->kind == SL_MAP_occlusion;
+    execution.frame.textures->lookup(
+        *query, is_shadow ? bias_of(execution) : ShadowBias{},
+        [&execution](const std::string& text) { report_map(execution, text); }, result);
 }
 
-uint32_t bake(void* engine, const sl_point_query* /*query*/) {
-    report_shader(of(engine), base::Severity::Warning, 0, "nothing is baked in this version");
-    return 0;
+// True if a value of this type takes what is known.
+bool fits(int32_t type, int32_t array_length, std::size_t count) {
+    const std::size_t items = array_length > 0 ? static_cast<std::size_t>(array_length) : 1;
+    return (type == SL_TYPE_float && items == count) ||
+           (type == SL_TYPE_matrix && array_length == 0 && count == 16);
 }
 
-uint32_t texture3d(void* engine, const sl_point_query* /*query*/) {
-    report_shader(of(engine), base::Severity::Warning, 0,
-                  "texture3d() reads nothing in this version");
-    return 0;
+int32_t map_info(void* engine, sl_string name, sl_string key, int32_t type, int32_t array_length,
+                 void* value) {
+    const Execution& execution = of(engine);
+    if (execution.frame.textures == nullptr) {
+        return 0;
+    }
+    const TextureFrame::Info& info = execution.frame.textures->info(name, key);
+    if (type == SL_TYPE_string && !info.text.empty()) {
+        *static_cast<sl_string*>(value) = execution.frame.strings.intern(info.text);
+        return 1;
+    }
+    if (info.numbers.empty() || !fits(type, array_length, info.numbers.size())) {
+        return 0;
+    }
+    std::copy(info.numbers.begin(), info.numbers.end(), static_cast<float*>(value));
+    return 1;
+}
+
+// World space, unless the shader says otherwise.
+base::Mat4 file_from_current(const Execution& execution, sl_string space) {
+    const std::string_view name = space != nullptr && space[0] != 0 ? space : "world";
+    const auto found = find_space(execution, name);
+    if (!found) {
+        report_unknown_space(execution, name);
+    }
+    return found ? found->space_from_camera : base::Mat4{};
+}
+
+uint32_t bake(void* engine, const sl_point_query* query) {
+    const Execution& execution = of(engine);
+    if (execution.frame.textures == nullptr || execution.thread == nullptr) {
+        return 0;
+    }
+    const std::uint32_t taken = execution.frame.textures->textures().points().add(
+        *query, file_from_current(execution, query->space));
+    if (taken == 0 && query->mask != 0) {
+        report_map(execution,
+                   "samples for \"" + std::string(query->file) +
+                       "\" differ from its first ones, or it is full; they are left out");
+    }
+    return taken;
+}
+
+uint32_t texture3d(void* engine, const sl_point_query* query) {
+    const Execution& execution = of(engine);
+    if (execution.frame.textures == nullptr) {
+        return 0;
+    }
+    const TextureFrame& textures = *execution.frame.textures;
+    const auto path = find_map(query->file, textures.directories());
+    std::string error = path ? "" : "no such file";
+    const std::uint32_t set =
+        path ? textures.textures().points().lookup(
+                   *path, *query, file_from_current(execution, query->space), error)
+             : 0;
+    if (!error.empty()) {
+        report_map(execution,
+                   "cannot read the points \"" + std::string(query->file) + "\": " + error);
+    }
+    return set;
 }
 
 int32_t raylevel(void* engine) {

@@ -51,6 +51,12 @@ constexpr Switch slctell_rows[] = {
 #undef SLCTELL_OPTION
 };
 
+constexpr Switch txmake_rows[] = {
+#define TXMAKE_OPTION(id, name, arguments, metavar, help) {{name, arguments, metavar, help}, ""},
+#include "tracer/txmake_options.def"
+#undef TXMAKE_OPTION
+};
+
 struct Program {
     std::string_view name, also; // a second name, "" = none
     std::span<const Switch> switches;
@@ -61,6 +67,7 @@ constexpr Program programs[] = {
     {"catrib", "", catrib_rows, "rib rib.gz"},
     {"slc", "", slc_rows, "sl slo"},
     {"slctell", "", slctell_rows, "slo slpkg"},
+    {"txmake", "", txmake_rows, "tif tiff png exr jpg z"},
 };
 
 // --- what completion offers for a value

@@ -11,7 +11,8 @@ import shutil
 import subprocess
 import sys
 
-PROGRAMS = {"render": "tracer/render", "catrib": "ribtools/catrib", "slc": "slc/slc", "slctell": "slc/slctell"}
+PROGRAMS = {"render": "tracer/render", "catrib": "ribtools/catrib", "slc": "slc/slc", "slctell": "slc/slctell",
+            "txmake": "tracer/txmake"}
 COMPLETIONS = {"bash": "{}", "zsh": "_{}", "fish": "{}.fish"}
 READ_BY_RENDER = re.compile(r'(?:getenv|directories_from|variable)\("([A-Z_]+)"\)')
 WHERE_READ = ("tracer/render.cpp", "runtime/shader_cache.cpp")

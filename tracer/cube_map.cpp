@@ -199,8 +199,11 @@ void CubeMap::lookup(const base::V3d& R, const CubeFootprint& footprint, int cha
         const int probes =
             std::clamp(static_cast<int>(std::ceil(e.major_length / minor)), 1, most_probes);
         const double lod = std::log2(minor / texel);
+        // Probes as wide as the minor axis cover the major one; a round footprint is one probe, and
+        // nothing jumps on the way there.
+        const double span = 1 - minor / std::max(e.major_length, minor);
         for (int i = 0; i < probes; ++i) {
-            const double at = (i + 0.5) / probes - 0.5;
+            const double at = probes > 1 ? (static_cast<double>(i) / (probes - 1) - 0.5) * span : 0;
             trilinear(lod, unit + at * e.major, channel, 1.0 / probes, {sum, out.size()});
         }
     }

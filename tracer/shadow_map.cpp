@@ -51,7 +51,7 @@ struct ShadowMap::Footprint {
     double slope[2] = {0, 0};            // of the key, per texel
     bool has_plane = false;
     double bias[2] = {0, 0};
-    double tolerance = 0;
+    double tolerance = 0, key_tolerance = 0; // of depths, of keys
 };
 
 ShadowMap::ShadowMap(const MapImage& image)
@@ -131,12 +131,11 @@ ShadowMap::Footprint ShadowMap::footprint(const View& view, const Spot& at, cons
     f.bias[0] = options.bias[0];
     f.bias[1] = options.bias[1];
     if (!options.has_bias) {
-        // Samples lie anywhere within their texels.
-        const double key_per_texel = 0.5 * (std::abs(f.slope[0]) + std::abs(f.slope[1]));
-        const double z_per_key = perspective_ ? at.z * at.z : 1;
         const double texel = texel_ * (perspective_ ? at.z : 1);
-        f.tolerance = (f.has_plane ? key_per_texel * z_per_key : unknown_slope_texels * texel) +
-                      rounding * (at.z + texel_ * width_);
+        f.tolerance =
+            (f.has_plane ? 0 : unknown_slope_texels * texel) + rounding * (at.z + texel_ * width_);
+        // Samples lie anywhere within their texels.
+        f.key_tolerance = 0.5 * (std::abs(f.slope[0]) + std::abs(f.slope[1]));
     }
     return f;
 }
@@ -152,7 +151,8 @@ bool ShadowMap::hides(const Footprint& f, long x, long y, double random) const {
     if (perspective_ && key <= 0) {
         return false; // beyond the horizon of the plane
     }
-    const double receiver = f.has_plane ? (perspective_ ? 1 / key : key) : f.at.z;
+    const double nearest = perspective_ ? 1 / (key + f.key_tolerance) : key - f.key_tolerance;
+    const double receiver = f.has_plane ? nearest : f.at.z;
     const double bias = f.bias[0] + (f.bias[1] - f.bias[0]) * random + f.tolerance;
     const std::size_t index = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
                               static_cast<std::size_t>(x);

@@ -5,6 +5,7 @@
 #include "runtime/base/temp_dir.h"
 #include "tracer/display.h"
 #include "tracer/display_format.h"
+#include "tracer/map_file.h"
 
 #include <OpenEXR/ImfArray.h>
 #include <OpenEXR/ImfChannelList.h>
@@ -390,15 +391,26 @@ TEST_F(DisplayTest, Drivers) {
         EXPECT_EQ(write(display("n", type, "rgb")), DisplayResult::Skipped);
     }
     EXPECT_EQ(warnings(), 1U);
-    for (const char* type : {"shadow", "deepshad"}) {
-        EXPECT_EQ(write(display("n", type, "rgb")), DisplayResult::Skipped);
-    }
     EXPECT_EQ(write(display("n", "tiff", "nothing")), DisplayResult::Skipped);
-    EXPECT_EQ(warnings(), 5U);
+    EXPECT_EQ(warnings(), 3U);
     EXPECT_FALSE(fs::exists(path("n")));
     image_ = {};
     EXPECT_EQ(write(display("n", "tiff", "rgb")), DisplayResult::Skipped);
-    EXPECT_EQ(warnings(), 6U);
+    EXPECT_EQ(warnings(), 4U);
+}
+
+TEST_F(DisplayTest, ShadowMaps) {
+    EXPECT_EQ(write(display("a.shd", "shadow", "z")), DisplayResult::Written);
+    EXPECT_EQ(warnings(), 0U);
+    std::string error;
+    const auto map = trace::read_map_file(path("a.shd"), error);
+    ASSERT_TRUE(map) << error;
+    EXPECT_EQ(map->format, trace::shadow_format);
+    EXPECT_TRUE(map->images.front().has_matrices);
+    EXPECT_EQ(map->images.front().values[1], image_.plane(Plane::Z)[1]);
+    EXPECT_EQ(map->images.front().values[0], rib::ri_infinity) << "nothing is there";
+    EXPECT_EQ(write(display("b.shd", "deepshad", "z")), DisplayResult::Written);
+    EXPECT_EQ(warnings(), 1U) << "opaque depth only";
 }
 
 TEST_F(DisplayTest, WindowsAndTheFilesInTheirPlace) {

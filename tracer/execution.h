@@ -97,6 +97,8 @@ struct BatchSubject {
     geo::Incident incident{};              // the rays, if a shader asks for messages
     // What messages see; shaders that have not run answer with the values of their calls.
     StageRun displacement{}, surface{}, atmosphere{};
+    // Differences of P at the auxiliary points, planes of the batch's stride; null: not known.
+    const float *P_u = nullptr, *P_v = nullptr;
 };
 
 class Execution {

@@ -12,6 +12,7 @@ NeededVariables HitShader::needed_after(const Group& group) const {
     const ShadingClass& c = classes_[group.shading_class];
     NeededVariables needed{shown_variables(group.shading_class) | c.surface->object().needed,
                            c.surface->object().needed_aux};
+    needed.aux |= c.lights.needs_differences ? std::uint64_t{1} << SL_VAR_P : 0;
     if (c.atmosphere != nullptr) {
         needed.main |= c.atmosphere->object().needed;
     }

@@ -176,7 +176,7 @@ void HitShader::shade_batch(const Group& group, std::span<const std::uint32_t> m
     surface.batch = &thread_.surface;
     surface.subject = &subject;
     subject.surface = {c.surface, &thread_.surface};
-    const sl_points planes = run_surface(c, shown, surface, members);
+    const sl_points planes = run_surface(c, shown, surface, subject, members);
     if (c.atmosphere != nullptr) {
         run_atmosphere(c, subject, members);
     }
@@ -237,7 +237,7 @@ void HitShader::gather_hits(const ShadingClass& c, std::span<const std::uint32_t
 // Ci and Oi start as Cs and Os ([R] of sl.md 5.2), so the geometry is asked for those whatever the
 // shader needs; where it has no planes for them they go straight to the results.
 sl_points HitShader::run_surface(const ShadingClass& c, std::uint64_t shown, Execution& execution,
-                                 std::span<const std::uint32_t> members) {
+                                 BatchSubject& subject, std::span<const std::uint32_t> members) {
     const auto count = static_cast<std::uint32_t>(members.size());
     rt::ShadeBatch& batch = thread_.surface;
     const rt::ShaderInstance& instance = c.surface->current();
@@ -256,9 +256,12 @@ sl_points HitShader::run_surface(const ShadingClass& c, std::uint64_t shown, Exe
     planes.var[SL_VAR_Cs] = own_Cs ? planes.var[SL_VAR_Cs] : Ci;
     planes.var[SL_VAR_Os] = own_Os ? planes.var[SL_VAR_Os] : Oi;
     const std::uint64_t needed = instance.object().needed | shown | bit(SL_VAR_Cs) | bit(SL_VAR_Os);
+    const AuxPlanes aux = aux_planes(c, batch);
     frame_.world->fill(subject_hits_, incident(count), needed & geometry_variables, stride, planes,
-                       batch.aux_points_u(), batch.aux_points_v());
-    displace(planes, batch.aux_points_u(), batch.aux_points_v(), count);
+                       aux.at_u(), aux.at_v());
+    displace(planes, aux.at_u(), aux.at_v(), count);
+    subject.P_u = aux.u.var[SL_VAR_P];
+    subject.P_v = aux.v.var[SL_VAR_P];
     if (own_Cs) {
         std::copy_n(planes.var[SL_VAR_Cs], 3 * stride, Ci);
     }
@@ -274,6 +277,20 @@ sl_points HitShader::run_surface(const ShadingClass& c, std::uint64_t shown, Exe
     Ci_ = Ci;
     Oi_ = Oi;
     return planes;
+}
+
+// Lights may need how the points they light differ, whether the surface does or not.
+HitShader::AuxPlanes HitShader::aux_planes(const ShadingClass& c, const rt::ShadeBatch& batch) {
+    AuxPlanes aux;
+    if (batch.aux_points_u() != nullptr) {
+        aux = {*batch.aux_points_u(), *batch.aux_points_v(), true};
+    }
+    if (c.lights.needs_differences && aux.u.var[SL_VAR_P] == nullptr) {
+        aux.u.var[SL_VAR_P] = batch_.P_u.data();
+        aux.v.var[SL_VAR_P] = batch_.P_v.data();
+        aux.wanted = true;
+    }
+    return aux;
 }
 
 // The volume between the eye and the surface; it takes Ci and Oi of the surface and gives those at

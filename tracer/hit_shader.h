@@ -72,7 +72,8 @@ private:
         static constexpr std::size_t size = SL_BATCH_MAX;
         std::array<geo::Hit, size> hits;
         alignas(64) std::array<float, size> ox, oy, oz, dx, dy, dz, footprint;
-        alignas(64) std::array<float, 3 * size> Ci, Oi; // planes of stride_
+        alignas(64) std::array<float, 3 * size> Ci, Oi;   // planes of stride_
+        alignas(64) std::array<float, 3 * size> P_u, P_v; // for lights
     };
 
     void group_hits(std::span<const geo::Hit> hits);
@@ -92,7 +93,15 @@ private:
     void gather_hits(const ShadingClass& c, std::span<const std::uint32_t> members);
     // Returns the planes of the variables, those of `shown` among them.
     sl_points run_surface(const ShadingClass& c, std::uint64_t shown, Execution& execution,
-                          std::span<const std::uint32_t> members);
+                          BatchSubject& subject, std::span<const std::uint32_t> members);
+    // Where the differences at the auxiliary points go.
+    struct AuxPlanes {
+        sl_points u{}, v{};
+        bool wanted = false;
+        [[nodiscard]] const sl_points* at_u() const { return wanted ? &u : nullptr; }
+        [[nodiscard]] const sl_points* at_v() const { return wanted ? &v : nullptr; }
+    };
+    [[nodiscard]] AuxPlanes aux_planes(const ShadingClass& c, const rt::ShadeBatch& batch);
     void run_atmosphere(const ShadingClass& c, BatchSubject& subject,
                         std::span<const std::uint32_t> members);
     // hit_displacement.cpp

@@ -108,6 +108,8 @@ LightList LightSet::list(const rib::Attributes& attributes) const {
     for (const rib::LightId id : attributes.lights) {
         if (id < lights_.size() && lights_[id].shader != nullptr) {
             (lights_[id].directional ? list.directional : list.ambient).push_back(id);
+            list.needs_differences |=
+                (lights_[id].shader->object().needed_aux >> SL_VAR_Ps & 1U) != 0;
         }
     }
     return list;

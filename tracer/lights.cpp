@@ -213,6 +213,32 @@ void LightRun::fill_points(std::uint32_t mask, const float* P, const float* N) {
     }
 }
 
+// Points that are those of the surface differ as it does; others (a march through a volume) not at
+// all. I = Ps - E differs as Ps does.
+void LightRun::fill_differences(std::uint32_t mask) {
+    const BatchSubject* subject = asker_->subject;
+    const bool known =
+        subject != nullptr && subject->P_u != nullptr && asker_->batch->has(SL_VAR_P);
+    const auto any = static_cast<std::uint32_t>(std::countr_zero(mask));
+    for (std::uint32_t lane = 0; lane < all_lanes; ++lane) {
+        const std::uint32_t from = (mask >> lane & 1U) != 0 ? lane : any;
+        const std::size_t point = first_ + from;
+        const bool same = known && point < asker_->batch->count() &&
+                          asker_->batch->plane(SL_VAR_P, 0)[point] == Ps_[0][lane] &&
+                          asker_->batch->plane(SL_VAR_P, 1)[point] == Ps_[1][lane] &&
+                          asker_->batch->plane(SL_VAR_P, 2)[point] == Ps_[2][lane];
+        for (int k = 0; k < 3; ++k) {
+            const std::size_t at = static_cast<std::size_t>(k) * asker_->batch->stride() + point;
+            for (const sl_variable id : {SL_VAR_Ps, SL_VAR_I}) {
+                if (batch_.aux_u(id, k) != nullptr) {
+                    batch_.aux_u(id, k)[lane] = same ? subject->P_u[at] : 0;
+                    batch_.aux_v(id, k)[lane] = same ? subject->P_v[at] : 0;
+                }
+            }
+        }
+    }
+}
+
 void LightRun::fill_seeds_and_time() {
     const std::uint32_t count = asker_->batch != nullptr ? asker_->batch->count() : 0;
     const float open = asker_->frame.spaces.shutter_open();
@@ -269,6 +295,9 @@ std::uint32_t LightRun::illuminate(const sl_light_query& query) {
         batch_.restart();
     }
     fill_points(mask, query.P, query.N);
+    if (info_->shader->object().needed_aux != 0) {
+        fill_differences(mask);
+    }
     fill_seeds_and_time();
     reset_results();
     send(query);

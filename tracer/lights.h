@@ -37,6 +37,7 @@ struct LightInfo {
 struct LightList {
     std::vector<rib::LightId> ambient;
     std::vector<rib::LightId> directional;
+    bool needs_differences = false; // some light asks how Ps differs at the auxiliary points
     friend bool operator==(const LightList&, const LightList&) = default;
 };
 
@@ -80,6 +81,7 @@ private:
     void fill_points(std::uint32_t mask, const float* P, const float* N);
     void send(const sl_light_query& query);
     void send_value(const sl_light_query& query, int index, const sl_value& value);
+    void fill_differences(std::uint32_t mask);
     void fill_seeds_and_time();
     void reset_results();
     [[nodiscard]] bool is_known(const sl_light_query& query) const;

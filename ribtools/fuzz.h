@@ -4,9 +4,8 @@
 #pragma once
 
 #include "ribtools/rib_source.h"
+#include "runtime/base/fuzz.h"
 
-#include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -16,5 +15,3 @@ namespace rib_fuzz {
 void read_and_convert(const std::string& stream);
 
 } // namespace rib_fuzz
-
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);

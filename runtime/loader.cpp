@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // One .slo file becomes one ShaderObject. The only caller of dlopen on files that users name.
 // The seal (base/seal.h) is checked on the bytes of the file first: a wrong fingerprint, a
-// truncated or a damaged file never reaches the dynamic linker. The descriptor's own fingerprint
-// and counts are checked after it. Objects that are no files (members of packages, results that no
+// truncated or a damaged file never reaches the dynamic linker. The descriptor is checked after it
+// (descriptor_check.h). Objects that are no files (members of packages, results that no
 // cache keeps) are mapped from anonymous memory.
 #include "runtime/base/file.h"
 #include "runtime/base/seal.h"
+#include "runtime/descriptor_check.h"
 #include "runtime/shader.h"
 #include "sl_fingerprint.h"
 
@@ -17,9 +18,6 @@
 namespace rt {
 
 namespace {
-
-// Generous; a larger count means that the descriptor is not one.
-constexpr int max_count = 1 << 16;
 
 bool runs_here(const sl_variant& variant) {
     switch (variant.isa) {
@@ -56,16 +54,6 @@ std::string why_not_sealed(std::string_view bytes, std::string& content) {
                "again";
     }
     return "cannot be checked";
-}
-
-bool plausible(const sl_object& object) {
-    const auto counted = [](int n, const void* p) {
-        return n >= 0 && n < max_count && (n == 0 || p);
-    };
-    return object.name && object.type >= 0 && object.type <= SL_SHADER_transformation &&
-           counted(object.num_params, object.params) &&
-           counted(object.num_strings, object.strings) &&
-           counted(object.num_variants, object.variants);
 }
 
 // Bytes as a file without a name. The dynamic linker knows objects by the path they were opened
@@ -124,22 +112,20 @@ bool ShaderObject::link(const std::string& file, StringTable& strings, std::stri
         why = "exports no sl_shader_object";
         return false;
     }
-    return take(*object, strings, why);
+    why = why_not_sound(*object, ObjectImage::around(object));
+    return why.empty() && take(*object, strings, why);
 }
 
 std::unique_ptr<ShaderObject> ShaderObject::adopt(const sl_object& object, StringTable& strings,
                                                   std::string& why) {
     std::unique_ptr<ShaderObject> shader(new ShaderObject);
-    return shader->take(object, strings, why) ? std::move(shader) : nullptr;
+    why = why_not_sound(object, {}); // linked into the program
+    return why.empty() && shader->take(object, strings, why) ? std::move(shader) : nullptr;
 }
 
 bool ShaderObject::take(const sl_object& object, StringTable& strings, std::string& why) {
-    if (!object.fingerprint || std::strcmp(object.fingerprint, SL_ABI_FINGERPRINT) != 0) {
+    if (std::strcmp(object.fingerprint, SL_ABI_FINGERPRINT) != 0) {
         why = "does not carry this version's ABI fingerprint; compile it again";
-        return false;
-    }
-    if (!plausible(object)) {
-        why = "has a descriptor that makes no sense";
         return false;
     }
     object_ = &object;

@@ -134,6 +134,9 @@ public:
         std::function<std::optional<SpecialShader>(const sl_object&,
                                                    std::span<const BoundValue> constants)>
             specialise;
+        // What it takes to have the shader as checked code (sl_services.def, not_a_number). May be
+        // empty.
+        std::function<std::optional<SpecialShader>(const sl_object&)> checked;
     };
     using Path = std::span<const std::string>;
 

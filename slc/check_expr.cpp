@@ -303,7 +303,8 @@ Checker::Operands Checker::choose_operands(Op op, Expr& left, Expr& right) {
 void Checker::binary_costs(Expr& e) {
     Expr& left = *e.args[0];
     Expr& right = *e.args[1];
-    const bool failed = costs(left).failed | costs(right).failed; // report errors of both sides
+    const bool left_failed = costs(left).failed; // report errors of both sides
+    const bool failed = costs(right).failed || left_failed;
     if (failed) {
         e.costs.failed = true;
         return;

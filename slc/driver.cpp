@@ -41,6 +41,7 @@ EmitOptions emit_options(const Program& plain, int lanes, const ObjectOptions& o
     emit.source = plain.files.empty() ? plain.name : plain.files.front();
     emit.ir_text = print_ir(plain);
     emit.profile = options.profile;
+    emit.checked = options.checked;
     return emit;
 }
 
@@ -57,6 +58,7 @@ std::string settings_text(const Toolchain& tools, const ObjectOptions& options) 
     if (options.shadeops != nullptr) {
         text += "\nshadeops " + options.shadeops->identity();
     }
+    text += options.checked ? "\nchecked" : "";
     return text + (options.front.optimise ? "\noptimised" : "\nplain");
 }
 

@@ -19,6 +19,7 @@ struct ObjectOptions {
     CompileOptions front;
     CompileFlags flags;
     bool profile = false;     // the object counts time by source line (sl_profile.h)
+    bool checked = false;     // the object tells where values stop being numbers
     bool native_only = false; // only the variant this processor runs best
     std::string index_dir;    // where object_key remembers (key_index.h); "" = nowhere
     base::ShadeopLibrary* shadeops = nullptr; // functions of DSOs; front.find_functions asks it

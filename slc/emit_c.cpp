@@ -148,6 +148,9 @@ void CFile::shade() {
         out_.line("sl_profile_begin(profile, call);");
         emitter.stamp_places(places_);
     }
+    if (options_.checked) {
+        emitter.check_numbers();
+    }
     emitter.emit_body();
     if (options_.profile) {
         out_.line("sl_profile_at(profile, 0, live);");
@@ -170,7 +173,8 @@ void CFile::init() {
     for (std::size_t i = 0; i < program_.params.size(); ++i) {
         const Param& p = program_.params[i];
         out_.open("if (!init->bound[" + std::to_string(i) + "]) {");
-        Emitter(program_, p.init, 0, Emitter::Mode::Init, c_dialect, names_, strings_, out_)
+        Emitter(program_, p.init, 0, Emitter::Mode::Init, c_dialect, names_, strings_, out_,
+                "_" + std::to_string(i))
             .emit_body();
         out_.close();
     }

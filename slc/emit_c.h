@@ -19,6 +19,7 @@ struct EmitOptions {
     std::string source;   // name of the source file, as the descriptor gives it
     std::string ir_text;  // "" = leave it out
     bool profile = false; // count time and lanes by source line (sl_profile.h)
+    bool checked = false; // the code tells where values stop being numbers
 };
 
 [[nodiscard]] std::string emit_c(const Program& program, const Facts& facts,

@@ -27,10 +27,10 @@ bool has_value_only(Op op) {
 
 Emitter::Emitter(const Program& program, const Block& body, std::uint64_t results, Mode mode,
                  const Dialect& dialect, const std::vector<std::string>& names, StringPool& strings,
-                 Lines& out)
+                 Lines& out, std::string label_suffix)
     : program_(program), body_(body), results_(results), mode_(mode), dialect_(dialect),
-      names_(names), strings_(strings), out_(out),
-      flow_(program, body, results, mode == Mode::Init) {
+      names_(names), strings_(strings), out_(out), label_suffix_(std::move(label_suffix)),
+      flow_(program, body, results, mode == Mode::Init), counted_(program, body) {
     find_truths(body);
 }
 
@@ -50,7 +50,12 @@ void Emitter::find_truths(const Block& b) {
 void Emitter::emit_body() {
     masks_[&body_] = "live";
     declare_at_top();
+    if (!counted_.empty()) {
+        out_.line(std::string(dialect_.uniform_truth) + " sl_steps = SL_STEPS_AT_ONCE;");
+    }
+    check_inputs();
     block(body_);
+    place_label("stopped" + label_suffix_);
     if (mode_ == Mode::Shade) {
         store_results();
     }
@@ -236,7 +241,8 @@ void Emitter::assign(VarId dst, const Expr& value, const Block& b) {
 }
 
 bool Emitter::may_defer(const Stmt& s, const Block& b) const {
-    if (s.dst == no_var || var(s.dst).kind != VarKind::Temp || var(s.dst).array_length > 0) {
+    if (checked_ || s.dst == no_var || var(s.dst).kind != VarKind::Temp ||
+        var(s.dst).array_length > 0) {
         return false;
     }
     const VarPlace& place = flow_.place(s.dst);

@@ -12,6 +12,7 @@
 
 #include "slc/emit_flow.h"
 #include "slc/ir.h"
+#include "slc/loop_bounds.h"
 
 #include <map>
 #include <string>
@@ -94,13 +95,15 @@ public:
 
     Emitter(const Program& program, const Block& body, std::uint64_t results, Mode mode,
             const Dialect& dialect, const std::vector<std::string>& names, StringPool& strings,
-            Lines& out);
+            Lines& out, std::string label_suffix = "");
 
     // Declares what is needed, then the statements, then the stores.
     void emit_body();
 
     // From now on emitted code stamps the places it comes to, by their rows in `places`.
     void stamp_places(std::vector<Loc>& places) { places_ = &places; }
+    // From now on emitted code tells where values stop being numbers (emit_check.cpp).
+    void check_numbers() { checked_ = true; }
 
 private:
     // --- values (emit_expr.cpp)
@@ -158,6 +161,13 @@ private:
     void refresh_planes(std::uint64_t reads, const Block& b);
     void store_outputs(const Block& b);
 
+    // --- checks (emit_check.cpp)
+    [[nodiscard]] bool is_checkable(VarId v) const;
+    void emit_check(Form form, const std::string& value, const std::string& lanes, const Loc& loc,
+                    const std::string& what);
+    void check_value(VarId v, const Stmt& s, const Block& b);
+    void check_inputs();
+
     // --- statements and control (emit_control.cpp)
     void block(const Block& b);
     void statement(const Stmt& s, const Block& b);
@@ -165,6 +175,9 @@ private:
     void loop(const Stmt& s, const Block& b);
     void uniform_loop(const Stmt& s, const Block& b);
     void masked_loop(const Stmt& s, const Block& b);
+    void count_step(const Stmt& s, const Block& b, const std::string& running);
+    [[nodiscard]] std::vector<std::string> masks_around(const Block& b,
+                                                        const std::string& but) const;
     void scope(const Stmt& s, const Block& b);
     void illuminance(const Stmt& s, const Block& b);
     void light_options(const Stmt& s, const std::string& lights);
@@ -214,7 +227,10 @@ private:
     const std::vector<std::string>& names_;
     StringPool& strings_;
     Lines& out_;
+    std::string label_suffix_; // keeps the labels of several bodies in one function apart
     Flow flow_;
+    CountedLoops counted_;
+    bool checked_ = false;
     std::unordered_map<const Block*, std::string> masks_;
     std::unordered_map<const Stmt*, std::string>
         stems_; // "loop_1": names of a construct's masks and labels

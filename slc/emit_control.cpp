@@ -4,6 +4,7 @@
 // out of every mask up to its target.
 #include "slc/builtins.h"
 #include "slc/emit_common.h"
+#include "slc/ir_util.h"
 
 #include <algorithm>
 
@@ -11,7 +12,7 @@ namespace slc {
 
 std::string Emitter::fresh(std::string_view stem) {
     std::string name(stem);
-    return name + "_" + std::to_string(++counters_[name]);
+    return name + "_" + std::to_string(++counters_[name]) + label_suffix_;
 }
 
 // `#line` in front of the first statement from a source line: compiler messages, debuggers and
@@ -59,7 +60,8 @@ void Emitter::block(const Block& b) {
     for (std::size_t i = 0; i < b.size(); ++i) {
         statement(b[i], b);
         const bool more = i + 1 < b.size();
-        if (more && flow_.loses_lanes(b[i])) {
+        const bool may_stop = mode_ == Mode::Shade && counted_.may_stop(b[i]);
+        if (more && (flow_.loses_lanes(b[i]) || may_stop)) {
             settle_all();
             if (end.empty()) {
                 end = fresh("end");
@@ -82,6 +84,7 @@ void Emitter::statement(const Stmt& s, const Block& b) {
     case Op::Call:
     case Op::Difference:
         call(s, b);
+        for_each_write(s, [&](VarId v, bool) { check_value(v, s, b); });
         return;
     case Op::Store:
         store_element(s, b);
@@ -124,6 +127,7 @@ void Emitter::statement(const Stmt& s, const Block& b) {
     }
     note_place(s.loc);
     assign(s.dst, value, b);
+    check_value(s.dst, s, b);
 }
 
 void Emitter::store_element(const Stmt& s, const Block& b) {
@@ -244,6 +248,7 @@ void Emitter::uniform_loop(const Stmt& s, const Block& b) {
     block(s.bodies[1]);
     place_label("next_" + stems_[&s]);
     block(s.bodies[2]);
+    count_step(s, b, mask(b));
     out_.close();
 }
 
@@ -277,7 +282,59 @@ void Emitter::masked_loop(const Stmt& s, const Block& b) {
     block(s.bodies[1]);
     place_label("next_" + stems_[&s]);
     block(s.bodies[2]);
+    count_step(s, b, lanes);
     out_.close();
+}
+
+// At a loop's back edge. Lanes that used up their iterations leave every mask: their results stay
+// what they were. `running`: the mask of the lanes in the loop.
+void Emitter::count_step(const Stmt& s, const Block& b, const std::string& running) {
+    if (!counted_.counts(s)) {
+        return;
+    }
+    const bool is_uniform = running == mask(b);
+    const auto may_stop = [&](const Stmt& inner) { return counted_.may_stop(inner); };
+    const bool holds_counted =
+        std::any_of(s.bodies.begin(), s.bodies.end(),
+                    [&](const Block& body) { return std::ranges::any_of(body, may_stop); });
+    if (mode_ == Mode::Shade && is_uniform && holds_counted) {
+        out_.line("if (!sl_any(" + running + ")) break; /* stopped inside */");
+    }
+    const std::string file = s.loc.file < program_.files.size() ? program_.files[s.loc.file] : "?";
+    const std::string lanes = mode_ == Mode::Shade ? running : "call->live";
+    out_.open("if (--sl_steps < 0 && (sl_steps = sl_more_steps(call, " + lanes + ", " +
+              c_string(file) + ", " + std::to_string(s.loc.line) + ")) == 0) {");
+    if (mode_ == Mode::Shade) {
+        for (const std::string& name : masks_around(b, running)) {
+            out_.line(name + " &= ~" + running + ";");
+        }
+        out_.line(running + " = (" + std::string(dialect_.varying_truth) + "){0};");
+        out_.line("break;");
+    } else {
+        labels_used_.insert("stopped" + label_suffix_);
+        out_.line("goto stopped" + label_suffix_ + ";");
+    }
+    out_.close();
+}
+
+// Every mask that holds lanes of a block, from the inside out, but one.
+std::vector<std::string> Emitter::masks_around(const Block& b, const std::string& but) const {
+    std::vector<std::string> masks;
+    const auto add = [&](const std::string& name) {
+        if (name != but && std::find(masks.begin(), masks.end(), name) == masks.end()) {
+            masks.push_back(name);
+        }
+    };
+    for (const Block* at = &b; at != nullptr; at = flow_.block(*at).parent) {
+        add(mask(*at));
+        const Stmt* owner = flow_.block(*at).owner;
+        if (owner != nullptr && owner->op == Op::Loop && flow_.construct(*owner).masked) {
+            add(stems_.at(owner));
+        } else if (owner != nullptr && owner->op == Op::Illuminance) {
+            add(stems_.at(owner) + ".live");
+        }
+    }
+    return masks;
 }
 
 void Emitter::scope(const Stmt& s, const Block& b) {

@@ -34,6 +34,10 @@ sl_string no_name(void*, sl_string) {
     return "";
 }
 void no_report(void*, std::int32_t, const char*) {}
+std::uint32_t no_more_steps(void*, std::uint32_t, std::uint32_t, sl_string, std::int32_t) {
+    return 0;
+}
+void no_complaint(void*, std::uint32_t, std::uint32_t, sl_string, std::int32_t, const char*) {}
 void unit_depth(void*, float* near_far) {
     near_far[0] = 0;
     near_far[1] = 1;
@@ -65,6 +69,8 @@ sl_services empty_services(rt::StringTable&) {
     s.intern = no_intern;
     s.shader_name = no_name;
     s.report = no_report;
+    s.loop_steps = no_more_steps;
+    s.not_a_number = no_complaint;
     s.depth_range = unit_depth;
     s.raylevel = zero;
     s.ray_kind = zero;

@@ -72,6 +72,20 @@ TEST(Hostile, InliningIsBounded) {
     EXPECT_NE(deep.messages.find("nested too deeply"), std::string::npos) << deep.messages;
 }
 
+TEST(Hostile, Lists) {
+    const auto arguments = compile(surface("printf(\"x\"" + repeat(", s", 100000) + ");"));
+    EXPECT_NE(arguments.messages.find("more than 1000 arguments"), std::string::npos);
+    EXPECT_EQ(compile(surface("printf(\"x\"" + repeat(", s", 900) + ");")).unit.num_errors, 0U);
+    std::string params;
+    for (int i = 0; i < 10000; ++i) {
+        params += "float p" + std::to_string(i) + " = 1; ";
+    }
+    const auto many = compile("surface a(" + params + ") { Ci = p1; }");
+    EXPECT_NE(many.messages.find("more than 2000 parameters"), std::string::npos);
+    EXPECT_EQ(compile(surface("printf(\"" + std::string(1 << 20, 'x') + "\");")).unit.num_errors,
+              0U);
+}
+
 TEST(Hostile, Arrays) {
     EXPECT_GT(compile(surface("float a[2147483648];")).unit.num_errors, 0U);
     EXPECT_GT(compile(surface("float a[1e30];")).unit.num_errors, 0U);

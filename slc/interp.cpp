@@ -121,7 +121,7 @@ bool Interpreter::run() {
         }
     }
     block(program_.body, all);
-    return steps_ < max_steps;
+    return steps_ < max_steps_;
 }
 
 namespace {
@@ -134,7 +134,7 @@ bool any(const std::vector<char>& mask) {
 
 void Interpreter::block(const Block& b, Mask& mask) {
     for (const Stmt& s : b) {
-        if (!any(mask) || steps_ >= max_steps) {
+        if (!any(mask) || steps_ >= max_steps_) {
             return;
         }
         statement(s, mask);
@@ -170,6 +170,7 @@ void Interpreter::statement(const Stmt& s, Mask& mask) {
         break;
     case Op::Call:
         call(s, mask);
+        round(s, mask);
         break;
     case Op::Difference:
         for (int p = 0; p < num_points_; ++p) {
@@ -184,7 +185,30 @@ void Interpreter::statement(const Stmt& s, Mask& mask) {
                 operation(s, p);
             }
         }
+        round(s, mask);
         break;
+    }
+}
+
+void Interpreter::round(const Stmt& s, const Mask& mask) {
+    if (rounding_ == 0 || s.dst == no_var || var(s.dst).type == Type::String) {
+        return;
+    }
+    constexpr double place = 6e-8; // half a unit in the last place of a float, relative
+    const double size = s.op == Op::Call ? 8 * place : place;
+    for (int p = 0; p < num_points_; ++p) {
+        if (mask[static_cast<std::size_t>(p)] == 0) {
+            continue;
+        }
+        for (double& x : at(s.dst, p).x) {
+            if (x == static_cast<float>(x) || std::isnan(x)) {
+                continue; // exact, or rounded before
+            }
+            rounding_ = rounding_ * 1664525U + 1013904223U;
+            const double sign = (rounding_ >> 31) != 0 ? 1 : -1;
+            const double base = s.op == Op::Call ? std::max(std::abs(x), 0.25) : std::abs(x);
+            x = static_cast<float>(x + sign * size * base);
+        }
     }
 }
 
@@ -208,7 +232,7 @@ void Interpreter::loop(const Stmt& s, Mask& mask) {
     const Mask none(mask.size(), 0);
     Mask running = mask;
     Mask ended(mask.size(), 0);
-    while (any(running) && steps_ < max_steps) {
+    while (any(running) && steps_ < max_steps_) {
         frames_.push_back({true, none, none});
         block(s.bodies[0], running);
         for (std::size_t p = 0; p < mask.size(); ++p) {
@@ -548,7 +572,7 @@ void Interpreter::gather(const Stmt& s, Mask& mask) {
             std::max(samples, mask[static_cast<std::size_t>(p)] != 0 ? at(s.args[4], p).f() : 0.0);
     }
     Mask left(mask.size(), 0);
-    for (int i = 0; i < samples && any(mask) && steps_ < max_steps; ++i) {
+    for (int i = 0; i < samples && any(mask) && steps_ < max_steps_; ++i) {
         frames_.push_back({true, none, none});
         block(s.bodies[1], mask);
         for (std::size_t p = 0; p < mask.size(); ++p) {

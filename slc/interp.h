@@ -62,6 +62,12 @@ public:
     // Evaluates the defaults of parameters that were not set, then the body. False: stopped, it did
     // not end.
     bool run();
+    // Statements times points until run() gives up.
+    void limit_steps(std::size_t most) { max_steps_ = most; }
+    // Values that are no floats are rounded up or down at random from now on, results of built-ins
+    // by a few places more: the spread over some seeds shows what float arithmetic makes of a
+    // program ([Vignes93] CESTAC).
+    void round_at_random(std::uint32_t seed) { rounding_ = seed | 1; }
 
     [[nodiscard]] const Value& global(int variable, int point) const;
     [[nodiscard]] const Value& aux(int variable, int aux, int point) const;
@@ -95,6 +101,7 @@ private:
     void illuminate(const Stmt& s, Mask& mask);
     bool emit_direction(const Stmt& s, int point, Triple3& L);
     void gather(const Stmt& s, Mask& mask);
+    void round(const Stmt& s, const Mask& mask);
 
     // interp_call.cpp
     void call(const Stmt& s, const Mask& mask);
@@ -119,7 +126,8 @@ private:
         return program_.vars[static_cast<std::size_t>(id)];
     }
 
-    static constexpr std::size_t max_steps = 20'000'000; // statements times points
+    std::uint32_t rounding_ = 0; // state of its random numbers; 0: double precision
+    std::size_t max_steps_ = 20'000'000;
 
     const Program& program_;
     InterpHost& host_;

@@ -31,6 +31,8 @@ private:
     void difference(const Stmt& s);
     void details(const Stmt& s);
     [[nodiscard]] bool fits(VarId id, const ArgSpec& spec) const;
+    [[nodiscard]] static bool comparable(Type a, Type b);
+    [[nodiscard]] bool light_operands(const Stmt& s) const;
 
     const Program& program_;
     std::vector<std::string> complaints_;
@@ -140,6 +142,19 @@ void Verifier::types(const Stmt& s) {
     const auto type = [&](std::size_t i) { return var(s.args[i]).type; };
     const auto is_value = [&](std::size_t i) { return var(s.args[i]).array_length == 0; };
     bool ok = true;
+    // Arrays are only copied, indexed and handed to built-ins.
+    if (s.op != Op::Copy && s.op != Op::Load && s.op != Op::Store && s.op != Op::Call) {
+        for (std::size_t i = 0; i < s.args.size(); ++i) {
+            ok = ok && is_value(i);
+        }
+    }
+    if (s.dst != no_var && s.op != Op::Copy && s.op != Op::Store) {
+        ok = ok && var(s.dst).array_length == 0;
+    }
+    if (!ok) {
+        complain(s, "an array where one value is wanted");
+        return;
+    }
     switch (s.op) {
     case Op::Copy: {
         const Var& to = var(s.dst);
@@ -162,28 +177,52 @@ void Verifier::types(const Stmt& s) {
         break;
     }
     case Op::Neg:
-        ok = is_value(0) && same_class(type(0), var(s.dst).type);
+        ok = same_class(type(0), var(s.dst).type) && type(0) != Type::String;
         break;
     case Op::Dot:
+        ok = is_triple(type(0)) && is_triple(type(1)) && var(s.dst).type == Type::Float;
+        break;
     case Op::Cross:
-        ok = is_triple(type(0)) && is_triple(type(1));
+        ok = is_triple(type(0)) && is_triple(type(1)) && is_triple(var(s.dst).type);
+        break;
+    case Op::Eq:
+    case Op::Ne:
+        ok = comparable(type(0), type(1)) && var(s.dst).type == Type::Float;
+        break;
+    case Op::Lt:
+    case Op::Le:
+    case Op::Gt:
+    case Op::Ge:
+        ok = comparable(type(0), type(1)) && type(0) != Type::String && type(0) != Type::Matrix &&
+             type(1) != Type::Matrix && var(s.dst).type == Type::Float;
         break;
     case Op::And:
     case Op::Or:
-        ok = type(0) == Type::Float && type(1) == Type::Float;
+        ok = type(0) == Type::Float && type(1) == Type::Float && var(s.dst).type == Type::Float;
         break;
     case Op::Not:
-        ok = type(0) == Type::Float;
+        ok = type(0) == Type::Float && var(s.dst).type == Type::Float;
         break;
     case Op::Select:
         ok = type(0) == Type::Float && same_class(type(1), var(s.dst).type) &&
              same_class(type(2), var(s.dst).type);
         break;
+    case Op::Component:
+        ok = is_triple(type(0)) && type(1) == Type::Float && var(s.dst).type == Type::Float;
+        break;
     case Op::Triple:
     case Op::Matrix16:
         for (std::size_t i = 0; i < s.args.size(); ++i) {
-            ok = ok && is_value(i) && type(i) == Type::Float;
+            ok = ok && type(i) == Type::Float;
         }
+        ok = ok &&
+             (s.op == Op::Triple ? is_triple(var(s.dst).type) : var(s.dst).type == Type::Matrix);
+        break;
+    case Op::Illuminance:
+    case Op::Illuminate:
+    case Op::Solar:
+    case Op::Gather:
+        ok = light_operands(s);
         break;
     case Op::Load:
         ok = !is_value(0) && same_class(type(0), var(s.dst).type) && type(1) == Type::Float &&
@@ -209,6 +248,29 @@ void Verifier::types(const Stmt& s) {
     if (!ok) {
         complain(s, "operands of the wrong type");
     }
+}
+
+bool Verifier::comparable(Type a, Type b) {
+    return same_class(a, b) || (a == Type::Float && is_triple(b)) ||
+           (b == Type::Float && is_triple(a));
+}
+
+// Places and axes are triples, angles are floats, categories texts.
+bool Verifier::light_operands(const Stmt& s) const {
+    const auto type = [&](std::size_t i) { return var(s.args[i]).type; };
+    const std::size_t n = s.args.size();
+    bool ok = s.category == no_var ||
+              (var(s.category).type == Type::String && var(s.category).array_length == 0);
+    for (const auto& [name, id] : s.options) {
+        ok = ok && var(id).kind != VarKind::Const && var(id).type != Type::Void;
+    }
+    if (s.op == Op::Gather) {
+        return ok && type(0) == Type::String && is_triple(type(1)) && is_triple(type(2)) &&
+               type(3) == Type::Float && type(4) == Type::Float;
+    }
+    const std::size_t axis = s.op == Op::Solar ? 0 : 1;
+    return ok && (n == axis || n == axis + 2) && (axis == 0 || is_triple(type(0))) &&
+           (n == axis || (is_triple(type(axis)) && type(axis + 1) == Type::Float));
 }
 
 bool Verifier::fits(VarId id, const ArgSpec& spec) const {

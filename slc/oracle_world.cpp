@@ -199,6 +199,10 @@ sl_services OracleWorld::services() {
         return world_of(engine).strings().intern(world_of(engine).shader_name(type ? type : ""));
     };
     s.report = [](void*, std::int32_t, const char*) {};
+    s.loop_steps = [](void*, std::uint32_t used, std::uint32_t, sl_string,
+                      std::int32_t) -> std::uint32_t { return used < (1U << 20) ? 1U << 20 : 0; };
+    s.not_a_number = [](void*, std::uint32_t, std::uint32_t, sl_string, std::int32_t, const char*) {
+    };
     s.depth_range = [](void* engine, float* near_far) {
         double range[2];
         world_of(engine).depth_range(range[0], range[1]);

@@ -367,6 +367,12 @@ void Parser::shader_formals(ast::Shader& shader) {
                                       (spec.type == Type::String ? "it is \"\"" : "it is 0"));
                 variable.init = default_value(*variable.symbol);
             }
+            if (shader.params.size() == max_params) {
+                messages_.error(variable.symbol->loc,
+                                "more than " + std::to_string(max_params) + " parameters",
+                                base::Code::Limit);
+                throw SyntaxError{};
+            }
             shader.params.push_back(std::move(variable));
         } while (accept(Tok::Comma) && !at_formal_group() && !is(Tok::RightParen) &&
                  !is(Tok::Semicolon));

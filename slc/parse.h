@@ -10,8 +10,10 @@
 
 namespace slc {
 
-constexpr int max_nesting = 256; // statements and expressions inside each other
-constexpr int max_chain = 1000;  // operators in one expression of equal rank: a + b + c ...
+constexpr int max_nesting = 256;            // statements and expressions inside each other
+constexpr std::size_t max_arguments = 1000; // of one call
+constexpr std::size_t max_params = 2000;    // of one shader
+constexpr int max_chain = 1000; // operators in one expression of equal rank: a + b + c ...
 constexpr int max_array_length = 65536;
 
 // Never fails: after an error it goes on at the next statement or definition. Errors are in

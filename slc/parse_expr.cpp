@@ -274,6 +274,13 @@ Expr* Parser::call(const Token& name) {
         }
     }
     expect(Tok::RightParen, "after the arguments of " + quoted(name.text));
+    if (e->args.size() > max_arguments) {
+        messages_.error(name.loc,
+                        "more than " + std::to_string(max_arguments) + " arguments of " +
+                            quoted(name.text),
+                        base::Code::Limit);
+        throw SyntaxError{};
+    }
     return e;
 }
 

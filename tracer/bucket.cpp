@@ -47,7 +47,7 @@ BucketRenderer::BucketRenderer(const FrameContext& frame, const Camera& camera,
                                                                     options.depth_from.end()) <= 1),
       shader_(frame, camera, classes, outputs, thread_) {}
 
-void BucketRenderer::render(std::size_t bucket, Film& film) {
+bool BucketRenderer::render(std::size_t bucket, Film& film) {
     sampler_.fill(film.sample_pixels(bucket), block_);
     SampleBuffer samples = film.buffer(bucket);
     Counters& counters = thread_.counters;
@@ -81,8 +81,12 @@ void BucketRenderer::render(std::size_t bucket, Film& film) {
     counters.add(Counter::samples, block_.count);
     counters.add(Counter::layers, layer_ + 1);
     counters.max_layers = std::max<std::uint64_t>(counters.max_layers, layer_ + 1);
+    if (thread_.is_abandoned) {
+        return false;
+    }
     const PartTimer timer(counters, Part::work_film);
     film.submit(bucket, std::move(samples));
+    return true;
 }
 
 void BucketRenderer::trace_camera_rays() {

@@ -28,8 +28,8 @@ public:
                    const ShadingClasses& classes, const OutputBindings* outputs,
                    const VisibilityOptions& options);
 
-    // Renders a bucket and hands its samples to the film.
-    void render(std::size_t bucket, Film& film);
+    // Renders a bucket and hands its samples to the film; false: it was interrupted in a shader.
+    [[nodiscard]] bool render(std::size_t bucket, Film& film);
 
     [[nodiscard]] ThreadState& thread() { return thread_; }
 

@@ -10,6 +10,7 @@
 #include "runtime/batch.h"
 #include "runtime/shader.h"
 #include "runtime/uniform_prints.h"
+#include "tracer/bad_values.h"
 #include "tracer/shadeop_call.h"
 #include "tracer/spaces.h"
 #include "tracer/stats.h"
@@ -49,6 +50,14 @@ struct FrameContext {
     const LightSet* lights = nullptr;
     base::ShadeopLibrary* shadeops = nullptr; // functions of DSOs; none: nothing is allowed
     const TextureFrame* textures = nullptr;   // null while shaders are bound
+    bool (*interrupted)() = nullptr;          // true: long shaders end now, whatever they return
+    // Iterations of loops a packet may run: Option "limits" "loopsteps".
+    std::uint32_t max_loop_steps = default_loop_steps;
+
+    rt::ShaderLibrary* library = nullptr; // null: shaders cannot be made any more
+    BadPlace* bad_place = nullptr;        // told by checked code; one thread only
+
+    static constexpr std::uint32_t default_loop_steps = 1U << 20;
 };
 
 // Matrices found for the running batch, by the addresses of the names: emitted code asks once per
@@ -80,6 +89,8 @@ struct ThreadState {
     std::string printed;              // printf of the bucket in work
     PixelTrace* trace = nullptr;      // --trace-pixel: told what happens
     ShaderProfile* profile = nullptr; // --profile-shaders: this thread's rows
+    BadValues bad;                    // results that were no numbers
+    bool is_abandoned = false;        // a shader was interrupted: what is in work is worth nothing
 };
 
 // A shader that runs or has run on the points of a batch, and the batch that holds its values.
@@ -130,8 +141,12 @@ public:
 // its points keep the values they have.
 void report_suspended(const Execution& execution);
 
-// A message about the running shader, once per shader and text.
+// A message about the running shader, once per shader and text. Line 0: the place of the call;
+// `file`: the shader's own if empty.
 void report_shader(const Execution& execution, base::Severity severity, int line,
-                   std::string_view text);
+                   std::string_view text, std::string_view file = {});
+
+// Option "limits" "loopsteps", or its default.
+[[nodiscard]] std::uint32_t max_loop_steps(const rib::Options& options);
 
 } // namespace trace

@@ -98,8 +98,18 @@ public:
 
     [[nodiscard]] const Camera& camera() const { return camera_; }
     [[nodiscard]] FrameContext context() const {
-        return {scene_,         spaces_,       tools_.strings,     tools_.diag,    world_.get(),
-                shaders_.get(), lights_.get(), settings_.shadeops, textures_.get()};
+        return {scene_,
+                spaces_,
+                tools_.strings,
+                tools_.diag,
+                world_.get(),
+                shaders_.get(),
+                lights_.get(),
+                settings_.shadeops,
+                textures_.get(),
+                settings_.interrupted,
+                max_loop_steps(scene_.options),
+                &tools_.library};
     }
     void add_stats(const Counters& counted) const {
         tools_.stats.add(counted, shaders_->names(), tick_rate_.seconds_per_tick());
@@ -121,7 +131,10 @@ public:
 private:
     bool show(Film& film, const DisplayPlan* shown) const;
     FrameResult render_buckets(Film& film, const Sampler& sampler,
-                               const std::vector<std::size_t>& order, PixelTrace* trace) const;
+                               const std::vector<std::size_t>& order, PixelTrace* trace,
+                               BadValues& bad) const;
+    void render_again(const PixelRange& pixels, const Sampler& sampler,
+                      const FilterWeights& weights, BadPlace& place) const;
     [[nodiscard]] Specialiser::Settings special_settings(bool is_traced) const;
     void add_world_stats() const;
     void write_baked(bool wanted) const;
@@ -194,10 +207,18 @@ FrameResult Frame::render(Image& image, const Company& company) const {
     if (checkpoint != nullptr) {
         checkpoint->start(*film);
     }
+    BadValues bad;
     const FrameResult result = render_buckets(
         *film, sampler,
         coarse_first(film->num_buckets(), film->columns(), every, rows_at_once(*film, sampler)),
-        trace);
+        trace, bad);
+    if (trace == nullptr) {
+        const auto again = [&](std::size_t bucket, BadPlace& place) {
+            render_again(film->output_pixels(bucket), sampler, weights, place);
+        };
+        const bool may_render = result != FrameResult::Interrupted;
+        report_bad_values(context(), bad, may_render ? ShadeAgain(again) : ShadeAgain());
+    }
     if (trace != nullptr) {
         trace->finish(sampler, weights, film->image());
     }
@@ -211,7 +232,8 @@ FrameResult Frame::render(Image& image, const Company& company) const {
 }
 
 FrameResult Frame::render_buckets(Film& film, const Sampler& sampler,
-                                  const std::vector<std::size_t>& order, PixelTrace* trace) const {
+                                  const std::vector<std::size_t>& order, PixelTrace* trace,
+                                  BadValues& bad) const {
     const FrameContext frame = context();
     const VisibilityOptions visibility = visibility_options(scene_.options);
     const auto num_slots = static_cast<std::size_t>(base::thread_count(settings_.num_threads));
@@ -242,7 +264,10 @@ FrameResult Frame::render_buckets(Film& film, const Sampler& sampler,
             renderer->thread().profile =
                 tools_.listing != nullptr ? &profiles[static_cast<std::size_t>(slot)] : nullptr;
         }
-        renderer->render(bucket, film);
+        renderer->thread().bad.begin_bucket(bucket);
+        if (!renderer->render(bucket, film)) {
+            return false;
+        }
         printer.finish(bucket, std::move(renderer->thread().printed));
         renderer->thread().printed.clear();
         progress.advance();
@@ -254,6 +279,7 @@ FrameResult Frame::render_buckets(Film& film, const Sampler& sampler,
     for (const auto& renderer : renderers) {
         if (renderer) {
             counters += renderer->thread().counters;
+            bad.add(renderer->thread().bad);
         }
     }
     for (std::size_t slot = 0; tools_.listing != nullptr && slot < num_slots; ++slot) {
@@ -262,6 +288,27 @@ FrameResult Frame::render_buckets(Film& film, const Sampler& sampler,
     counters.add(Counter::special_used, specialiser.num_special());
     add_stats(counters);
     return film.complete() ? FrameResult::Done : FrameResult::Interrupted;
+}
+
+// For messages: what shaders tell counts, nothing of the picture.
+void Frame::render_again(const PixelRange& pixels, const Sampler& sampler,
+                         const FilterWeights& weights, BadPlace& place) const {
+    Raster raster = camera_.raster();
+    raster.crop = pixels;
+    FilmSettings settings = film_settings(scene_.options, tools_.diag);
+    settings.extra = outputs_.film_channels(outputs_.weights(sampler, tools_.diag));
+    const std::unique_ptr<Film> film =
+        pixels.area() > 0 ? Film::create(raster, sampler, weights, settings, tools_.diag) : nullptr;
+    FrameContext frame = context();
+    frame.bad_place = &place;
+    BucketRenderer renderer(frame, camera_, sampler, *classes_, &bindings_,
+                            visibility_options(scene_.options));
+    for (std::size_t bucket = 0; film && bucket < film->num_buckets() && !place.is_found();
+         ++bucket) {
+        if (!renderer.render(bucket, *film)) {
+            return;
+        }
+    }
 }
 
 // A traced pixel tells of all variables the shader names.

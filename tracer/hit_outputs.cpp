@@ -75,8 +75,7 @@ void HitShader::scatter_outputs(std::uint32_t shading_class, const sl_points& pl
     }
     if (num_bad > 0) {
         thread_.counters.add(Counter::bad_values, num_bad);
-        report_shader(Execution(frame_, shader), base::Severity::Warning, 0,
-                      "a value a display shows is not a number at some points; it is 0 there");
+        thread_.bad.note(shader, BadResult::Output, num_bad);
     }
 }
 

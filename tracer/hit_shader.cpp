@@ -178,6 +178,7 @@ void HitShader::shade_batch(const Group& group, std::span<const std::uint32_t> m
     subject.surface = {c.surface, &thread_.surface};
     const sl_points planes = run_surface(c, shown, surface, subject, members);
     if (c.atmosphere != nullptr) {
+        drop_bad_surface(*c.surface, static_cast<std::uint32_t>(members.size()));
         run_atmosphere(c, subject, members);
     }
     const bool all_good = scatter(members);
@@ -185,7 +186,7 @@ void HitShader::shade_batch(const Group& group, std::span<const std::uint32_t> m
         scatter_outputs(group.shading_class, planes, members, *c.surface);
     }
     if (!all_good) {
-        blacken_bad(members, *c.surface);
+        blacken_bad(members, c.atmosphere != nullptr ? *c.atmosphere : *c.surface);
     }
     if (thread_.trace != nullptr) {
         thread_.trace->shaded(members, out_);
@@ -427,6 +428,23 @@ bool HitShader::scatter(std::span<const std::uint32_t> members) {
     return all_good;
 }
 
+// Before a volume takes them: its own light still comes from there.
+void HitShader::drop_bad_surface(const ShaderEntry& shader, std::uint32_t count) {
+    std::uint64_t num_bad = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        float sum = 0; // x - x is 0 for numbers, NaN for the rest
+        for (std::size_t at = i; at < 3 * std::size_t{stride_}; at += stride_) {
+            sum += (Ci_[at] - Ci_[at]) + (Oi_[at] - Oi_[at]);
+        }
+        for (std::size_t at = i; sum != 0 && at < 3 * std::size_t{stride_}; at += stride_) {
+            Ci_[at] = Oi_[at] = 0;
+        }
+        num_bad += sum != 0 ? 1 : 0;
+    }
+    thread_.counters.add(Counter::bad_values, num_bad);
+    thread_.bad.note(shader, BadResult::Color, num_bad);
+}
+
 // What is no number becomes a transparent black point.
 void HitShader::blacken_bad(std::span<const std::uint32_t> members, const ShaderEntry& shader) {
     std::uint64_t num_bad = 0;
@@ -448,9 +466,7 @@ void HitShader::blacken_bad(std::span<const std::uint32_t> members, const Shader
         return; // it was in the padding
     }
     thread_.counters.add(Counter::bad_values, num_bad);
-    const Execution execution(frame_, shader);
-    report_shader(execution, base::Severity::Warning, 0,
-                  "Ci or Oi is not a number at some points; they are left black and transparent");
+    thread_.bad.note(shader, BadResult::Color, num_bad);
 }
 
 } // namespace trace

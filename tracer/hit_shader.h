@@ -122,6 +122,7 @@ private:
     void run(rt::ShadeBatch& batch, Execution& execution);
     // False if some result is no number.
     [[nodiscard]] bool scatter(std::span<const std::uint32_t> members);
+    void drop_bad_surface(const ShaderEntry& shader, std::uint32_t count);
     void blacken_bad(std::span<const std::uint32_t> members, const ShaderEntry& shader);
 
     // What displays show: hit_outputs.cpp.

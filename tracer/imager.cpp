@@ -35,7 +35,7 @@ public:
     // Pixels first .. first+count-1 of the picture, row by row.
     void run(ThreadState& thread, std::size_t first, std::uint32_t count) {
         rt::ShadeBatch& batch = thread.surface;
-        batch.begin(*imager_.instance, count);
+        batch.begin(imager_.current(), count);
         fill(batch, first);
         Execution execution(frame_, imager_);
         execution.thread = &thread;
@@ -48,7 +48,10 @@ public:
         of_shader.add_time(base::ticks() - start);
         of_shader.add_batch(count, batch.num_packets(), execution.lanes());
         thread.counters.add(Counter::points_imager, count);
-        thread.counters.add(Counter::bad_values, read_back(batch, first));
+        const std::uint64_t num_bad = read_back(batch, first);
+        thread.counters.add(Counter::bad_values, num_bad);
+        thread.bad.begin_bucket(first / SL_BATCH_MAX);
+        thread.bad.note(imager_, BadResult::Imager, num_bad);
     }
 
 private:
@@ -115,6 +118,7 @@ void run_imager(const FrameContext& frame, const ShaderEntry& imager, Image& ima
                 Counters& counters, bool prints) {
     const std::size_t num_pixels = image.pixels.area();
     const std::size_t num_batches = (num_pixels + SL_BATCH_MAX - 1) / SL_BATCH_MAX;
+    const Image before = image; // to find where bad values arise
     std::vector<ThreadState> threads(static_cast<std::size_t>(base::thread_count(num_threads)));
     ImagerRun run(frame, imager, image);
     std::vector<std::string> printed(num_batches);
@@ -133,16 +137,21 @@ void run_imager(const FrameContext& frame, const ShaderEntry& imager, Image& ima
     for (const std::string& text : printed) {
         std::fwrite(text.data(), 1, text.size(), stdout);
     }
-    std::uint64_t num_bad = 0;
+    BadValues bad;
     for (const ThreadState& thread : threads) {
-        num_bad += thread.counters.get(Counter::bad_values);
+        bad.add(thread.bad);
         counters += thread.counters;
     }
-    if (num_bad > 0) {
-        const Execution execution(frame, imager);
-        report_shader(execution, base::Severity::Warning, 0,
-                      "some results are not numbers; they are replaced by 0");
-    }
+    report_bad_values(frame, bad, [&](std::size_t item, BadPlace& place) {
+        FrameContext again = frame;
+        again.bad_place = &place;
+        Image scratch = before;
+        ThreadState thread;
+        ImagerRun(again, imager, scratch)
+            .run(thread, item * SL_BATCH_MAX,
+                 static_cast<std::uint32_t>(
+                     std::min<std::size_t>(SL_BATCH_MAX, num_pixels - item * SL_BATCH_MAX)));
+    });
 }
 
 } // namespace trace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/lights.h"
 
+#include "runtime/base/lanes4.h"
 #include "runtime/base/ticks.h"
 #include "tracer/messages.h"
 #include "tracer/pixel_trace.h"
@@ -313,6 +314,7 @@ void LightRun::run(std::uint32_t num_points) {
     if (batch_.run({&service_table(), &*execution_}) != 0) {
         report_suspended(*execution_);
     }
+    drop_bad();
     if (is_timed) {
         const std::uint64_t spent = base::ticks() - start;
         of_shader.add_time(spent);
@@ -320,6 +322,34 @@ void LightRun::run(std::uint32_t num_points) {
     }
     of_shader.add_batch(num_points, batch_.num_packets(), execution_->lanes());
     counters.add(Counter::light_packets, batch_.num_packets());
+}
+
+// Light that is no number does not arrive: the lane counts as unlit, and black.
+void LightRun::drop_bad() {
+    static constexpr sl_variable results[] = {SL_VAR_L, SL_VAR_Cl, SL_VAR_Ol};
+    base::Float4 bad[all_lanes / 4] = {}; // x - x is 0 for numbers, NaN for the rest
+    for (const sl_variable id : results) {
+        for (std::size_t at = 0; batch_.has(id) && at < 3 * all_lanes; at += 4) {
+            const auto x = *reinterpret_cast<const base::Float4*>(batch_.plane(id) + at);
+            bad[at / 4 % (all_lanes / 4)] += x - x;
+        }
+    }
+    std::uint64_t num_bad = 0;
+    for (std::uint32_t lane = 0; lane < all_lanes; ++lane) {
+        if (bad[lane / 4][lane % 4] == 0) {
+            continue;
+        }
+        num_bad += (execution_->asked_mask >> lane & 1U) != 0 ? 1 : 0;
+        for (const sl_variable id : results) {
+            for (int k = 0; k < 3 && batch_.has(id); ++k) {
+                batch_.plane(id, k)[lane] = 0;
+            }
+        }
+    }
+    if (num_bad > 0) {
+        asker_->thread->counters.add(Counter::bad_values, num_bad);
+        asker_->thread->bad.note(*info_->shader, BadResult::Light, num_bad);
+    }
 }
 
 float LightRun::param(int index, std::uint32_t lane) {

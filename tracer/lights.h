@@ -77,6 +77,7 @@ public:
 private:
     void begin();
     void run(std::uint32_t num_points);
+    void drop_bad();
     void fill_frame(const Space& space);
     void fill_points(std::uint32_t mask, const float* P, const float* N);
     void send(const sl_light_query& query);

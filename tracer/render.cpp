@@ -155,9 +155,7 @@ double compile_seconds(std::size_t num_statements) {
 // The compiler's order for an object, as the runtime knows it.
 std::optional<rt::SpecialShader> special_shader(const sl_object& general,
                                                 std::span<const rt::BoundValue> constants,
-                                                bool profile, base::ShadeopLibrary& shadeops) {
-    slc::ObjectOptions options = compile_options({}, {}, shadeops);
-    options.profile = profile;
+                                                const slc::ObjectOptions& options) {
     std::vector<slc::ConstantParam> params;
     params.reserve(constants.size());
     for (const rt::BoundValue& value : constants) {
@@ -266,8 +264,15 @@ trace::RendererConfig renderer_config(const trace::RenderOptions& options,
     config.shaders.specialise =
         [&shadeops, profile = config.profile_shaders](const sl_object& general,
                                                       std::span<const rt::BoundValue> constants) {
-            return special_shader(general, constants, profile, shadeops);
+            slc::ObjectOptions object = compile_options({}, {}, shadeops);
+            object.profile = profile;
+            return special_shader(general, constants, object);
         };
+    config.shaders.checked = [&shadeops](const sl_object& general) {
+        slc::ObjectOptions object = compile_options({}, {}, shadeops);
+        object.checked = true;
+        return special_shader(general, {}, object);
+    };
     config.shaders.path_first = options.shader_path;
     return config;
 }

@@ -198,6 +198,44 @@ void report(void* engine, int32_t line, const char* text) {
     report_shader(of(engine), base::Severity::Warning, line, text);
 }
 
+uint32_t loop_steps(void* engine, uint32_t used, uint32_t mask, sl_string file, int32_t line) {
+    Execution& execution = of(engine);
+    const FrameContext& frame = execution.frame;
+    ThreadState* thread = execution.thread;
+    if (thread != nullptr && frame.interrupted != nullptr && frame.interrupted()) {
+        thread->is_abandoned = true;
+        return 0;
+    }
+    if (used < frame.max_loop_steps) {
+        return frame.max_loop_steps - used;
+    }
+    if (thread != nullptr) {
+        thread->counters.add(Counter::stopped_points,
+                             static_cast<std::uint64_t>(std::popcount(mask)));
+    }
+    if (mask != 0) {
+        report_shader(execution, base::Severity::Warning, line,
+                      "a loop did not end in " + std::to_string(frame.max_loop_steps) +
+                          " rounds; its points keep the results they came with (Option "
+                          "\"limits\" \"loopsteps\")",
+                      file);
+    }
+    return 0;
+}
+
+void not_a_number(void* engine, uint32_t first, uint32_t mask, sl_string file, int32_t line,
+                  const char* text) {
+    Execution& execution = of(engine);
+    BadPlace* place = execution.frame.bad_place;
+    const auto lanes = static_cast<std::uint32_t>(std::popcount(mask));
+    if (place != nullptr && !place->is_found() && place->shader == &execution.running &&
+        may_print(execution, first + static_cast<std::uint32_t>(std::countr_zero(mask)), lanes)) {
+        place->file = file;
+        place->line = line;
+        place->text = text;
+    }
+}
+
 void depth_range(void* engine, float* near_far) {
     const rib::Options& options = of(engine).frame.scene.options;
     near_far[0] = options.near_clip;

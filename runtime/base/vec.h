@@ -64,9 +64,9 @@ struct Color {
     constexpr explicit Color(float s) : r(s), g(s), b(s) {}
     constexpr Color(float r_, float g_, float b_) : r(r_), g(g_), b(b_) {}
 
-    friend constexpr Color operator+(Color a, Color b) { return {a.r + b.r, a.g + b.g, a.b + b.b}; }
-    friend constexpr Color operator-(Color a, Color b) { return {a.r - b.r, a.g - b.g, a.b - b.b}; }
-    friend constexpr Color operator*(Color a, Color b) { return {a.r * b.r, a.g * b.g, a.b * b.b}; }
+    friend constexpr Color operator+(Color a, Color o) { return {a.r + o.r, a.g + o.g, a.b + o.b}; }
+    friend constexpr Color operator-(Color a, Color o) { return {a.r - o.r, a.g - o.g, a.b - o.b}; }
+    friend constexpr Color operator*(Color a, Color o) { return {a.r * o.r, a.g * o.g, a.b * o.b}; }
     friend constexpr Color operator*(Color a, float s) { return {a.r * s, a.g * s, a.b * s}; }
     constexpr Color& operator+=(Color o) { return *this = *this + o; }
     friend constexpr bool operator==(const Color&, const Color&) = default;

@@ -23,6 +23,8 @@ typedef struct sl_call {
     sli live;       /* the same as a mask */
     sl_counters own_counters;
     const struct sl_light_loop* lights; /* lightsource(): the illuminance loop around the call */
+    uint32_t steps;                     /* iterations of loops, as far as the engine was told */
+    sli checked; /* checked code: lanes whose values are all numbers so far */
 } sl_call;
 
 SL_INLINE void sl_call_begin(sl_call* call, const sl_batch* batch, uint32_t first, uint32_t count) {
@@ -36,6 +38,8 @@ SL_INLINE void sl_call_begin(sl_call* call, const sl_batch* batch, uint32_t firs
     call->own_counters.random_uniform = 0;
     call->counters = &call->own_counters;
     call->lights = 0;
+    call->steps = 0;
+    call->checked = call->live;
 }
 
 /* For parameter defaults: only slu_ functions may be called. */
@@ -50,6 +54,57 @@ SL_INLINE void sl_call_begin_init(sl_call* call, const sl_init* init) {
     call->own_counters.random_uniform = 0;
     call->counters = &call->own_counters;
     call->lights = 0;
+    call->steps = 0;
+    call->checked = call->live;
+}
+
+/* --- loops without a known end
+ * ------------------------------------------------------------------------------------------------
+ */
+
+/* Iterations between two questions to the engine. */
+enum { SL_STEPS_AT_ONCE = 1 << 14 };
+
+/* The packet has used up its iterations: how many follow, 0 if the lanes in mask have to stop. */
+static __attribute__((noinline, cold, unused)) int32_t
+sl_more_steps(sl_call* call, sli mask, const char* file, int32_t line) {
+    call->steps += SL_STEPS_AT_ONCE;
+    const uint32_t more =
+        call->services->loop_steps(call->engine, call->steps, sl_bits(mask), file, line);
+    if (more == 0)
+        call->steps = 0; /* the lanes that go on start counting anew */
+    return more < SL_STEPS_AT_ONCE ? (int32_t)more : SL_STEPS_AT_ONCE;
+}
+
+/* --- checked code
+ * ---------------------------------------------------------------------------------------------- */
+
+static __attribute__((noinline, cold, unused)) void
+sl_complain(sl_call* call, sli bad, const char* file, int32_t line, const char* text) {
+    call->checked &= ~bad;
+    call->services->not_a_number(call->engine, call->first, sl_bits(bad), file, line, text);
+}
+/* x - x is 0 for numbers, NaN for the rest. */
+SL_INLINE void sl_check_f(sl_call* call, sli mask, slf a, const char* file, int32_t line,
+                          const char* text) {
+    const sli bad = mask & call->checked & ~(a - a == 0.0f);
+    if (sl_any(bad))
+        sl_complain(call, bad, file, line, text);
+}
+SL_INLINE void sl_check_3(sl_call* call, sli mask, slv a, const char* file, int32_t line,
+                          const char* text) {
+    sl_check_f(call, mask, (a.x - a.x) + (a.y - a.y) + (a.z - a.z), file, line, text);
+}
+SL_INLINE void sl_check_m(sl_call* call, sli mask, slm a, const char* file, int32_t line,
+                          const char* text) {
+    for (int i = 0; i < 16; i++)
+        sl_check_f(call, mask, a.m[i], file, line, text);
+}
+SL_INLINE sli sl_some_zero_f(slf a) {
+    return a == 0.0f;
+}
+SL_INLINE sli sl_some_zero_3(slv a) {
+    return (a.x == 0.0f) | (a.y == 0.0f) | (a.z == 0.0f);
 }
 
 /* --- uniform to lanes

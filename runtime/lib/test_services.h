@@ -66,6 +66,7 @@ public:
     std::map<std::pair<int, std::string>, TestMessage> messages; // (SL_MESSAGE_*, name)
     std::map<std::string, std::string> shader_names;             // "" = the running shader
     std::array<float, 2> clipping{0, 1};
+    std::uint32_t max_loop_steps = 1 << 20;
     int ray_level = 0, ray_type = SL_RAY_camera;
     std::function<void(const std::string&, std::uint32_t first, std::uint32_t mask,
                        const sl_value* outputs, int num_outputs, const sl_value* inputs,
@@ -242,6 +243,18 @@ private:
     static void depth_range_(void* engine, float* near_far) {
         near_far[0] = of(engine).clipping[0];
         near_far[1] = of(engine).clipping[1];
+    }
+    static std::uint32_t loop_steps_(void* engine, std::uint32_t used, std::uint32_t, sl_string,
+                                     std::int32_t line) {
+        TestEngine& e = of(engine);
+        if (used < e.max_loop_steps)
+            return e.max_loop_steps - used;
+        report_(engine, line, "a loop does not end");
+        return 0;
+    }
+    static void not_a_number_(void* engine, std::uint32_t, std::uint32_t, sl_string,
+                              std::int32_t line, const char* text) {
+        of(engine).reports.push_back(std::to_string(line) + ": " + text);
     }
     static std::int32_t raylevel_(void* engine) {
         return of(engine).ray_level;

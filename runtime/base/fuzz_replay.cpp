@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Runs a fuzz target over every file of a folder, without a fuzzer: seeds and mended faults as a
 // test.
-#include "ribtools/fuzz.h"
+#include "runtime/base/fuzz.h"
 
 #include <cstdio>
 #include <filesystem>

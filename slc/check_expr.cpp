@@ -520,7 +520,8 @@ void Checker::deliver(Expr& e, Type wanted, std::string_view what) {
             best_type = t;
         }
     }
-    if (best == no_cost && wanted == Type::Float && c[Type::Color] == 0) {
+    if (best == no_cost && wanted == Type::Float && e.kind != ExprKind::Tuple &&
+        c[Type::Color] < last_resort) {
         messages_.warning(e.loc, std::string(what) +
                                      " is float, but color is given; its first component is taken");
         settle(e, Type::Color);

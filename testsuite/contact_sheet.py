@@ -8,6 +8,7 @@ line per shader whose render said something. Needs the Debian package python3-pi
 """
 
 import argparse
+import concurrent.futures
 import os
 import re
 import subprocess
@@ -152,10 +153,10 @@ def main():
     kinds = {}
     with tempfile.TemporaryDirectory() as folder:
         make_map(folder)
-        for kind, name in shaders():
-            if options.only and name not in options.only:
-                continue
-            picture, said = render(os.path.abspath(options.build), folder, kind, name)
+        wanted = [(kind, name) for kind, name in shaders() if not options.only or name in options.only]
+        with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+            done = list(pool.map(lambda job: render(os.path.abspath(options.build), folder, *job), wanted))
+        for (kind, name), (picture, said) in zip(wanted, done):
             kinds.setdefault(kind, []).append((name, picture))
             if said or picture is None:
                 print(f"{name}: {'; '.join(said[:3])}{' NO PICTURE' if picture is None else ''}", flush=True)

@@ -67,7 +67,7 @@ PARAMETERS = {
     "slide_projector": '"intensity" 1.5 "fieldofview" .8',
     "window_light": '"intensity" 1.2 "point center" [0 0 3] "vector in" [0 0 1] "vector up" [0 1 0]',
     "area_soft": '"intensity" 8',
-    "two_cones": '"intensity" 8',
+    "two_cones": '"intensity" 2',
     "metaball_light": '"intensity" 8',
     "noisy_mist": '"mindist" .02 "maxdist" .09',
     "smoke_march": '"opacdensity" .35 "lightdensity" .25',

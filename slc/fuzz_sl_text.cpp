@@ -15,7 +15,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::string_view text(reinterpret_cast<const char*>(data), size);
     slc::Unit unit = slc::front_end_text(text, "fuzz.sl", options, diag);
     for (slc::Program& program : unit.programs) {
-        slc_fuzz::check_verified(program, "lowering made a program that does not verify");
         slc::run_passes(program, options);
         slc_fuzz::check_verified(program, "the passes made a program that does not verify");
         slc_fuzz::check_program(program);

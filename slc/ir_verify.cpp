@@ -262,7 +262,7 @@ bool Verifier::light_operands(const Stmt& s) const {
     bool ok = s.category == no_var ||
               (var(s.category).type == Type::String && var(s.category).array_length == 0);
     for (const auto& [name, id] : s.options) {
-        ok = ok && var(id).kind != VarKind::Const && var(id).type != Type::Void;
+        ok = ok && (var(id).kind != VarKind::Const || !option_is_output(s, name));
     }
     if (s.op == Op::Gather) {
         return ok && type(0) == Type::String && is_triple(type(1)) && is_triple(type(2)) &&

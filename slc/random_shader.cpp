@@ -101,7 +101,7 @@ private:
             const std::string name = "in" + std::to_string(count++);
             text += std::string("    ") + (is_uniform_ ? "uniform " : "varying ") + word(type) +
                     " " + name + " = 0;\n";
-            names_.push_back({name, type, false, false, is_uniform_});
+            names_.push_back({name, type, false, false, false}); // the same in both worlds
         }
         return text;
     }

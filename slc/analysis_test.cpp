@@ -25,7 +25,14 @@ std::string names(std::uint64_t mask) {
 Facts facts_of(const std::string& text) {
     const auto c = compile(text);
     EXPECT_EQ(c.unit.num_errors, 0U) << c.messages;
-    return c.unit.programs.empty() ? Facts{} : analyse(c.unit.programs[0]);
+    if (c.unit.programs.empty()) {
+        return {};
+    }
+    Program program = c.unit.programs[0];
+    resolve_area_operators(program, {});
+    const auto complaints = verify_ir(program);
+    EXPECT_TRUE(complaints.empty()) << complaints.front() << print_ir(program);
+    return analyse(program);
 }
 
 struct Need {

@@ -126,7 +126,7 @@ std::optional<std::string> preprocess_file(const std::string& path, const Compil
 }
 
 std::optional<DumpKind> dump_kind(std::string_view name) {
-    constexpr std::string_view names[] = {"tokens", "ast", "ir", "facts"};
+    constexpr std::string_view names[] = {"tokens", "ast", "ir", "points", "facts"};
     for (std::size_t i = 0; i < std::size(names); ++i) {
         if (names[i] == name) {
             return static_cast<DumpKind>(i);
@@ -155,7 +155,14 @@ std::optional<std::string> dump_file(const std::string& path, DumpKind kind,
     const Unit unit = lowered(*file, options, true, session);
     std::string out;
     for (const Program& program : unit.programs) {
-        out += kind == DumpKind::Ir ? print_ir(program) : facts_text(program, analyse(program));
+        if (kind == DumpKind::Ir) {
+            out += print_ir(program);
+            continue;
+        }
+        Program resolved = program;
+        resolve_area_operators(resolved, options);
+        out +=
+            kind == DumpKind::Points ? print_ir(resolved) : facts_text(resolved, analyse(resolved));
     }
     return session.messages.num_errors() == 0 ? std::optional(out) : std::nullopt;
 }

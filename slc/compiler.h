@@ -68,14 +68,19 @@ struct Unit {
 // values.
 void run_passes(Program& program, const CompileOptions& options, Messages* messages = nullptr);
 
-// Never changes the program. Exact after run_passes.
+// Makes what happens at the auxiliary points explicit (pass_area.cpp), so that no area operator is
+// left: what is emitted and interpreted. The IR text kept in objects is the one before, from which
+// specialisation starts.
+void resolve_area_operators(Program& program, const CompileOptions& options);
+
+// Of a program whose area operators are resolved. Never changes it. Exact after run_passes.
 [[nodiscard]] Facts analyse(const Program& program);
 
 // Text after the preprocessor (for cache keys); nullopt after messages.
 [[nodiscard]] std::optional<std::string>
 preprocess_file(const std::string& path, const CompileOptions& options, base::Diag& diag);
 
-enum class DumpKind { Tokens, Ast, Ir, Facts };
+enum class DumpKind { Tokens, Ast, Ir, Points, Facts }; // Points: area operators resolved
 // nullopt: no such dump name, or the file has errors (already reported).
 [[nodiscard]] std::optional<DumpKind> dump_kind(std::string_view name);
 [[nodiscard]] std::optional<std::string> dump_file(const std::string& path, DumpKind kind,

@@ -216,7 +216,9 @@ TEST(Corpus, UnneededVariablesDoNotMatter) {
     for (const fs::path& path : all_shaders()) {
         QuietDiag diag;
         const Unit unit = compile_file(path.string(), options_with_headers(), diag.get());
-        for (const Program& program : unit.programs) {
+        for (Program program : unit.programs) {
+            resolve_area_operators(program, {});
+            expect_sound(program);
             const Facts facts = analyse(program);
             Host host;
             Interpreter clean(program, host, num_points);
@@ -249,7 +251,7 @@ TEST(Corpus, UnneededVariablesDoNotMatter) {
 
 TEST(Corpus, Dumps) {
     const std::string path = all_shaders().front().string();
-    for (const char* name : {"tokens", "ast", "ir", "facts"}) {
+    for (const char* name : {"tokens", "ast", "ir", "points", "facts"}) {
         QuietDiag diag;
         const auto kind = dump_kind(name);
         ASSERT_TRUE(kind);

@@ -30,6 +30,12 @@ Program with_plain_files(const Program& program) {
     return plain;
 }
 
+Program resolved(const Program& program, const CompileOptions& options) {
+    Program ready = program;
+    resolve_area_operators(ready, options);
+    return ready;
+}
+
 std::vector<int> widths(const ObjectOptions& options) {
     return options.native_only ? std::vector<int>{native_lanes()} : std::vector<int>{8, 4};
 }
@@ -96,20 +102,23 @@ void report_shadeops(base::ShadeopLibrary& library, base::Diag& diag) {
 
 std::string c_text(const Program& program, int lanes, const ObjectOptions& options) {
     const Program plain = with_plain_files(program);
-    return emit_c(plain, analyse(plain), emit_options(plain, lanes, options));
+    const Program ready = resolved(plain, options.front);
+    return emit_c(ready, analyse(ready), emit_options(plain, lanes, options));
 }
 
 namespace {
 
-BuiltObject build(const Program& plain, const Facts& facts, const ObjectOptions& options,
-                  base::Diag& diag) {
+// `ready`: `plain` with its area operators resolved, whose facts these are. The object keeps the IR
+// of `plain`.
+BuiltObject build(const Program& plain, const Program& ready, const Facts& facts,
+                  const ObjectOptions& options, base::Diag& diag) {
     const auto tools = find_toolchain(options.front.preprocessor, diag);
     if (!tools) {
         return {};
     }
     std::vector<VariantText> variants;
     for (const int lanes : widths(options)) {
-        variants.push_back({lanes, emit_c(plain, facts, emit_options(plain, lanes, options))});
+        variants.push_back({lanes, emit_c(ready, facts, emit_options(plain, lanes, options))});
     }
     auto bytes = build_shared_object(*tools, variants, options.flags, plain.name,
                                      options.front.cancelled, diag);
@@ -120,7 +129,8 @@ BuiltObject build(const Program& plain, const Facts& facts, const ObjectOptions&
 
 BuiltObject build_object(const Program& program, const ObjectOptions& options, base::Diag& diag) {
     const Program plain = with_plain_files(program);
-    return build(plain, analyse(plain), options, diag);
+    const Program ready = resolved(plain, options.front);
+    return build(plain, ready, analyse(ready), options, diag);
 }
 
 std::optional<SpecialOrder> special_order(const sl_object& general,
@@ -152,11 +162,14 @@ std::optional<SpecialOrder> special_order(const sl_object& general,
 // run, these stay what they are in the general shader.
 BuiltObject build_special(const SpecialOrder& order, const ObjectOptions& options,
                           base::Diag& diag) {
-    Facts facts = analyse(order.special.program);
+    CompileOptions exact = options.front; // the bits of the general code
+    exact.exact = true;
+    const Program ready = resolved(order.special.program, exact);
+    Facts facts = analyse(ready);
     if ((facts.facts & (SL_FACT_lights | SL_FACT_ambient)) != 0) {
         facts.needed |= order.kept_needed;
     }
-    return build(order.special.program, facts, options, diag);
+    return build(order.special.program, ready, facts, options, diag);
 }
 
 std::optional<std::string> compile_to_bytes(const std::string& sl_path,

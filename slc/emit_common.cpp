@@ -125,7 +125,7 @@ void Emitter::load_aux(VarId v) {
 
 void Emitter::store_aux(VarId v) {
     const Var& variable = var(v);
-    if (variable.kind == VarKind::Global) {
+    if (variable.kind == VarKind::Global && program_.shader_type == SL_SHADER_displacement) {
         out_.line("sl_store_aux_" + std::string(form_suffix(form(v))) + "(call, " +
                   (variable.aux == 1 ? "batch->aux_u" : "batch->aux_v") + ", SL_VAR_" +
                   std::string(variable_rows()[static_cast<std::size_t>(variable.index)].name) +
@@ -145,7 +145,8 @@ void Emitter::load_global(VarId v) {
         return;
     }
     const Form f = form(v);
-    const std::string name = "SL_VAR_" + var(v).name;
+    const std::string name =
+        "SL_VAR_" + std::string(variable_rows()[static_cast<std::size_t>(var(v).index)].name);
     std::string value = varying(v) ? "slv_var_" : "slu_var_";
     value += std::string(form_suffix(f)) + "(call, " + name + ")";
     out_.line(declarator(v, !place.is_written) + " = " + value + ";");
@@ -190,8 +191,9 @@ void Emitter::store_results() {
             store_param(v, "live");
         } else if (variable.kind == VarKind::Global && (results_ >> variable.index & 1U) != 0) {
             out_.line("sl_store_" + std::string(form_suffix(form(v))) +
-                      "(call, live, batch->main->var[SL_VAR_" + variable.name + "], " + names_[i] +
-                      ");");
+                      "(call, live, batch->main->var[SL_VAR_" +
+                      std::string(variable_rows()[static_cast<std::size_t>(variable.index)].name) +
+                      "], " + names_[i] + ");");
         }
     }
 }

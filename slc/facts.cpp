@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the engine wants to know of a shader: needed, written and auxiliary variables, and
-// SL_FACT_*. Needs: pass_detail (auxiliary slice). Changes nothing.
+// SL_FACT_*. Needs: resolve_area_operators(). Changes nothing.
 #include "slc/compiler.h"
 #include "slc/ir_util.h"
 #include "slc/liveness.h"
@@ -14,11 +14,11 @@ namespace {
 
 class Analysis {
 public:
-    explicit Analysis(const Program& program)
-        : program_(program), live_(program, LiveMode::Results), aux_(program, LiveMode::Aux) {}
+    explicit Analysis(const Program& program) : program_(program), live_(program) {}
     Facts run();
 
 private:
+    void find_aux_params();
     void block(const Block& b);
     void statement(const Stmt& s);
     void call(const Stmt& s);
@@ -33,7 +33,7 @@ private:
     [[nodiscard]] bool is_light() const { return program_.shader_type == SL_SHADER_light; }
 
     const Program& program_;
-    Liveness live_, aux_;
+    Liveness live_;
     Facts facts_;
     std::uint64_t explained_ = 0;
 };
@@ -55,10 +55,26 @@ Facts Analysis::run() {
             facts_.facts |= spaces(s) != 0 ? SL_FACT_shader_space : 0;
         }
     }
-    if ((facts_.facts & SL_FACT_area_operators) != 0) {
-        facts_.needed_aux = aux_.at_entry().globals() & ~light_bits;
+    facts_.needed_aux = live_.at_entry().globals(1) | live_.at_entry().globals(2);
+    for (const VarId id : written_differences(program_)) {
+        facts_.written_aux |= bit(var(id).index);
     }
+    find_aux_params();
+    const bool any_aux = facts_.needed_aux != 0 ||
+                         std::find(facts_.aux_params.begin(), facts_.aux_params.end(), true) !=
+                             facts_.aux_params.end();
+    facts_.facts |= any_aux ? SL_FACT_area_operators : 0;
     return std::move(facts_);
+}
+
+// Emitted code loads the differences of every parameter the program mentions.
+void Analysis::find_aux_params() {
+    facts_.aux_params.assign(program_.params.size(), false);
+    for (const Var& v : program_.vars) {
+        if (v.kind == VarKind::Param && v.aux != 0) {
+            facts_.aux_params[static_cast<std::size_t>(v.index)] = true;
+        }
+    }
 }
 
 void Analysis::block(const Block& b) {
@@ -100,9 +116,11 @@ void Analysis::call(const Stmt& s) {
     static constexpr struct {
         Property property;
         std::uint32_t fact;
-    } facts[] = {{PropLights, SL_FACT_lights},    {PropArea, SL_FACT_area_operators},
-                 {PropTraces, SL_FACT_traces},    {PropTextures, SL_FACT_textures},
-                 {PropState, SL_FACT_attributes}, {PropRandom, SL_FACT_random}};
+    } facts[] = {{PropLights, SL_FACT_lights},
+                 {PropTraces, SL_FACT_traces},
+                 {PropTextures, SL_FACT_textures},
+                 {PropState, SL_FACT_attributes},
+                 {PropRandom, SL_FACT_random}};
     const BuiltinRow& row = builtin_of(s);
     for (const auto& f : facts) {
         facts_.facts |= row.has(f.property) ? f.fact : 0;
@@ -206,7 +224,8 @@ std::string facts_text(const Program& program, const Facts& facts) {
     std::string out =
         std::string(shader_type_name(program.shader_type)) + " " + program.name + "\n";
     out += "needed:" + names_of(facts.needed) + "\nwritten:" + names_of(facts.written) +
-           "\nneeded_aux:" + names_of(facts.needed_aux) + "\nfacts:";
+           "\nneeded_aux:" + names_of(facts.needed_aux) +
+           "\nwritten_aux:" + names_of(facts.written_aux) + "\nfacts:";
     for (const auto& n : names) {
         out += (facts.facts & n.fact) != 0 ? " " + std::string(n.name) : "";
     }

@@ -107,6 +107,16 @@ void Interpreter::set_param(std::string_view name, int point, const Value& value
     }
 }
 
+void Interpreter::set_param_aux(VarId id, int aux, int point, const Value& value) {
+    for (std::size_t i = 0; i < program_.vars.size(); ++i) {
+        const Var& v = program_.vars[i];
+        if (v.kind == VarKind::Param && v.aux == aux && v.index == var(id).index &&
+            v.type == value.type) {
+            values_[i][static_cast<std::size_t>(point)] = value;
+        }
+    }
+}
+
 const Value& Interpreter::param(std::string_view name, int point) const {
     static const Value missing;
     const std::size_t id = find(name);
@@ -214,6 +224,10 @@ void Interpreter::round(const Stmt& s, const Mask& mask) {
 
 // Runs both sides under their masks; points that left inside are gone afterwards.
 void Interpreter::branch(const Stmt& s, Mask& mask) {
+    if (director_ != nullptr) {
+        directed_branch(s, mask);
+        return;
+    }
     Mask then = mask;
     Mask otherwise = mask;
     for (std::size_t p = 0; p < mask.size(); ++p) {
@@ -228,25 +242,53 @@ void Interpreter::branch(const Stmt& s, Mask& mask) {
     }
 }
 
+void Interpreter::directed_branch(const Stmt& s, Mask& mask) {
+    const int arm = director_->decide(s, 0, at(s.args[0], 0).f() != 0) ? 0 : 1;
+    const auto values = values_;
+    const auto globals = globals_;
+    director_->enter(s, arm, 0);
+    block(s.bodies[static_cast<std::size_t>(arm)], mask);
+    if (director_->leave()) {
+        values_ = values;
+        globals_ = globals;
+        mask.assign(mask.size(), 1);
+    }
+}
+
+// One of a statement's bodies, in its round-th round.
+void Interpreter::part(const Stmt& s, int body, int round, Mask& mask) {
+    if (director_ != nullptr) {
+        director_->enter(s, body, round);
+    }
+    block(s.bodies[static_cast<std::size_t>(body)], mask);
+    if (director_ != nullptr) {
+        director_->leave();
+    }
+}
+
 void Interpreter::loop(const Stmt& s, Mask& mask) {
     const Mask none(mask.size(), 0);
     Mask running = mask;
     Mask ended(mask.size(), 0);
-    while (any(running) && steps_ < max_steps_) {
+    for (int round = 0; any(running) && steps_ < max_steps_; ++round) {
         frames_.push_back({true, none, none});
-        block(s.bodies[0], running);
+        part(s, 0, round, running);
         for (std::size_t p = 0; p < mask.size(); ++p) {
-            if (running[p] != 0 && at(s.args[0], static_cast<int>(p)).f() == 0) {
+            bool again = at(s.args[0], static_cast<int>(p)).f() != 0;
+            if (director_ != nullptr && running[p] != 0) {
+                again = director_->decide(s, round, again);
+            }
+            if (running[p] != 0 && !again) {
                 running[p] = 0;
                 ended[p] = 1;
             }
         }
-        block(s.bodies[1], running);
+        part(s, 1, round, running);
         for (std::size_t p = 0; p < mask.size(); ++p) {
             running[p] = static_cast<char>(running[p] != 0 || frames_.back().continued[p] != 0);
             ended[p] = static_cast<char>(ended[p] != 0 || frames_.back().left[p] != 0);
         }
-        block(s.bodies[2], running);
+        part(s, 2, round, running);
         frames_.pop_back();
         steps_ += mask.size();
     }
@@ -255,6 +297,10 @@ void Interpreter::loop(const Stmt& s, Mask& mask) {
 
 // The target's frame remembers the points; they take part in nothing until it is reached.
 void Interpreter::jump(const Stmt& s, Mask& mask) {
+    if (director_ != nullptr && !director_->may_jump(s)) {
+        std::fill(mask.begin(), mask.end(), 0); // up to where leave() says so
+        return;
+    }
     int levels = s.levels;
     for (auto f = frames_.rbegin(); f != frames_.rend(); ++f) {
         if (f->is_loop != (s.op != Op::Leave) || --levels > 0) {
@@ -272,7 +318,7 @@ void Interpreter::jump(const Stmt& s, Mask& mask) {
 void Interpreter::scope(const Stmt& s, Mask& mask) {
     const Mask none(mask.size(), 0);
     frames_.push_back({false, none, none});
-    block(s.bodies[0], mask);
+    part(s, 0, 0, mask);
     for (std::size_t p = 0; p < mask.size(); ++p) {
         mask[p] = static_cast<char>(mask[p] != 0 || frames_.back().left[p] != 0);
     }
@@ -478,7 +524,7 @@ void Interpreter::illuminance(const Stmt& s, Mask& mask) {
         for (std::size_t p = 0; p < mask.size(); ++p) {
             skipped[p] = static_cast<char>(running[p] != 0 && in_body[p] == 0);
         }
-        block(s.bodies[0], in_body);
+        part(s, 0, light, in_body);
         for (std::size_t p = 0; p < mask.size(); ++p) {
             running[p] = static_cast<char>(skipped[p] != 0 || in_body[p] != 0 ||
                                            frames_.back().continued[p] != 0);
@@ -557,7 +603,7 @@ void Interpreter::illuminate(const Stmt& s, Mask& mask) {
             outside[i] = 1;
         }
     }
-    block(s.bodies[0], inside);
+    part(s, 0, 0, inside);
     for (std::size_t p = 0; p < mask.size(); ++p) {
         mask[p] = static_cast<char>(inside[p] != 0 || outside[p] != 0);
     }

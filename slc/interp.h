@@ -50,6 +50,23 @@ public:
     virtual void neighbours(int point, int& at_u, int& at_v);
 };
 
+// Decides instead of a program that runs on one point: for evaluating it where another point went.
+class InterpDirector {
+public:
+    virtual ~InterpDirector() = default;
+    // Whether an If or a Loop in its round-th round is taken.
+    virtual bool decide(const Stmt& s, int round, bool natural) = 0;
+    virtual void enter(const Stmt& s, int body, int round) = 0;
+    // True: what has happened since enter() did not, because of a jump that was not allowed.
+    virtual bool leave() = 0;
+    virtual bool may_jump(const Stmt& s) = 0;
+    // The value of a call, if it is known otherwise.
+    virtual bool replace(const Stmt& s, const std::vector<Value>& args, Value& result) = 0;
+    virtual void computed(const Stmt& s, const std::vector<Value>& args, const Value& result) = 0;
+    // Arguments an area operator has at auxiliary point 1 or 2.
+    virtual const std::vector<Value>& arguments_at(const Stmt& s, int aux) = 0;
+};
+
 class Interpreter {
 public:
     Interpreter(const Program& program, InterpHost& host, int num_points);
@@ -59,6 +76,10 @@ public:
     // Its difference at an auxiliary point (1: u, 2: v).
     void set_aux(int variable, int aux, int point, const Value& value);
     void set_param(std::string_view name, int point, const Value& value); // instead of its default
+    // The difference of the parameter that is variable `id`, where the program reads it.
+    void set_param_aux(VarId id, int aux, int point, const Value& value);
+    void direct(InterpDirector* director) { director_ = director; } // with one point only
+    void stop() { steps_ = max_steps_; }
     // Evaluates the defaults of parameters that were not set, then the body. False: stopped, it did
     // not end.
     bool run();
@@ -93,6 +114,8 @@ private:
     void compare(const Stmt& s, int point);
     void copy(const Stmt& s, int point);
     void branch(const Stmt& s, Mask& mask);
+    void directed_branch(const Stmt& s, Mask& mask);
+    void part(const Stmt& s, int body, int round, Mask& mask);
     void loop(const Stmt& s, Mask& mask);
     void jump(const Stmt& s, Mask& mask);
     void scope(const Stmt& s, Mask& mask);
@@ -117,7 +140,7 @@ private:
     void random(int point, bool is_uniform, Value& result);
     void fallback(const Stmt& s, int point, Value& result);
     Triple3 illuminate_sum(const Stmt& s, int point);
-    Value difference(VarId id, int point, int neighbour) const;
+    Value difference(const Stmt& s, std::size_t arg, int point, int aux, int neighbour) const;
 
     Value& at(VarId id, int point);
     [[nodiscard]] const Value& at(VarId id, int point) const;
@@ -131,6 +154,7 @@ private:
 
     const Program& program_;
     InterpHost& host_;
+    InterpDirector* director_ = nullptr;
     int num_points_;
     std::vector<std::vector<Value>> values_;   // by variable, by point
     std::vector<std::vector<Value>> globals_;  // by aux * SL_VAR_COUNT + sl_variable, by point

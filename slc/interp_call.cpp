@@ -31,12 +31,18 @@ void Interpreter::call_at(const Stmt& s, const Mask& mask, int point) {
         args.push_back(at(id, point));
     }
     Value result = Value::zero(s.dst != no_var ? var(s.dst).type : Type::Float);
-    if (const PureFunction f = pure_function(row.body)) {
+    const bool is_known = director_ != nullptr && director_->replace(s, args, result);
+    if (is_known) {
+        args.clear();
+    } else if (const PureFunction f = pure_function(row.body)) {
         f(args, result);
     } else if (!lighting(s, point, result) && !spaces(s, point, args, result) &&
                !area(s, mask, point, result) && !text(s, point, result) &&
                !shadeop(s, point, args) && !state(s, point, args, result)) {
         fallback(s, point, result);
+    }
+    if (director_ != nullptr && !is_known) {
+        director_->computed(s, args, result);
     }
     for (std::size_t i = 0; i < row.args.size(); ++i) {
         const std::size_t k = arg_position(row, i);
@@ -265,8 +271,17 @@ bool Interpreter::state(const Stmt& s, int point, std::vector<Value>& args, Valu
     return true;
 }
 
-Value Interpreter::difference(VarId id, int point, int neighbour) const {
+Value Interpreter::difference(const Stmt& s, std::size_t arg, int point, int aux,
+                              int neighbour) const {
+    const VarId id = s.args[arg];
     Value d = Value::zero(var(id).type);
+    if (director_ != nullptr) {
+        const std::vector<Value>& there = director_->arguments_at(s, aux);
+        for (std::size_t i = 0; i < d.x.size() && arg < there.size(); ++i) {
+            d.x[i] = there[arg].at(i) - at(id, point).at(i);
+        }
+        return d;
+    }
     for (std::size_t i = 0; i < d.x.size() && neighbour >= 0; ++i) {
         d.x[i] = at(id, neighbour).at(i) - at(id, point).at(i);
     }
@@ -308,15 +323,15 @@ bool Interpreter::area(const Stmt& s, const Mask& mask, int point, Value& result
     const double du = global(SL_VAR_du, point).f();
     const double dv = global(SL_VAR_dv, point).f();
     const auto ratio = [](double a, double b) { return b != 0 ? a / b : 0.0; };
-    const Value by_u = difference(s.args[is_step ? 1 : 0], point, at_u);
-    const Value by_v = difference(s.args[is_step ? 1 : 0], point, at_v);
+    const Value by_u = difference(s, is_step ? 1 : 0, point, 1, at_u);
+    const Value by_v = difference(s, is_step ? 1 : 0, point, 2, at_v);
     if (name == "Du" || name == "Dv") {
         for (std::size_t i = 0; i < result.x.size(); ++i) {
             result.x[i] = name == "Du" ? ratio(by_u.at(i), du) : ratio(by_v.at(i), dv);
         }
     } else if (name == "Deriv") {
-        const double den_u = difference(s.args[1], point, at_u).f();
-        const double den_v = difference(s.args[1], point, at_v).f();
+        const double den_u = difference(s, 1, point, 1, at_u).f();
+        const double den_v = difference(s, 1, point, 2, at_v).f();
         for (std::size_t i = 0; i < result.x.size(); ++i) {
             result.x[i] = ratio(by_u.at(i), den_u) + ratio(by_v.at(i), den_v);
         }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "slc/liveness.h"
 
+#include "slc/aux_analysis.h"
 #include "slc/ir_util.h"
 
 #include <algorithm>
@@ -25,8 +26,9 @@ std::uint64_t VarSet::globals(int aux) const {
     return mask;
 }
 
-Liveness::Liveness(const Program& program, LiveMode mode)
-    : program_(program), mode_(mode), entry_(program) {
+Liveness::Liveness(const Program& program, LiveMode mode, const AuxAnalysis* aux,
+                   std::uint64_t results, const Stmt* only)
+    : program_(program), mode_(mode), aux_(aux), results_(results), only_(only), entry_(program) {
     solve();
 }
 
@@ -42,6 +44,15 @@ void Liveness::solve() {
 }
 
 namespace {
+
+bool assigns(const Block& b, VarId wanted) {
+    return std::any_of(b.begin(), b.end(), [&](const Stmt& s) {
+        bool found = false;
+        for_each_write(s, [&](VarId id, bool) { found = found || id == wanted; });
+        return found || std::any_of(s.bodies.begin(), s.bodies.end(),
+                                    [&](const Block& inner) { return assigns(inner, wanted); });
+    });
+}
 
 std::uint64_t results_of(sl_shader_type type) {
     const auto bits = [](std::initializer_list<int> ids) {
@@ -86,18 +97,36 @@ std::uint64_t written_globals(const Program& program, const Block& b) {
     return mask;
 }
 
+std::vector<VarId> written_differences(const Program& program) {
+    std::vector<VarId> ids;
+    for (std::size_t i = 0; i < program.vars.size(); ++i) {
+        const Var& v = program.vars[i];
+        const bool is_result = v.kind == VarKind::Global && v.aux != 0 &&
+                               program.shader_type == SL_SHADER_displacement;
+        if (is_result && assigns(program.body, static_cast<VarId>(i))) {
+            ids.push_back(static_cast<VarId>(i));
+        }
+    }
+    return ids;
+}
+
 // What the engine reads when the shader has ended: the results of its type that it writes (the
 // others keep what the engine has), and output parameters.
 void Liveness::exit_set(VarSet& live) const {
-    if (mode_ == LiveMode::Aux) {
-        return;
-    }
     const std::uint64_t results =
-        results_of(program_.shader_type) & written_globals(program_, program_.body);
+        mode_ == LiveMode::Aux
+            ? results_
+            : results_of(program_.shader_type) & written_globals(program_, program_.body);
     for (int i = 0; i < SL_VAR_COUNT; ++i) {
         if ((results >> i & 1) != 0) {
             live.insert(live.global_slot(i));
         }
+    }
+    if (mode_ == LiveMode::Aux) {
+        return;
+    }
+    for (const VarId id : written_differences(program_)) {
+        live.insert(live.slot(program_, id));
     }
     for (const Param& p : program_.params) {
         if (program_.vars[static_cast<std::size_t>(p.var)].is_output) {
@@ -151,10 +180,13 @@ void Liveness::add_reads(const Stmt& s, VarSet& live) const {
     }
 }
 
-// An area operator takes differences of its varying arguments; texture(name) those of s and t.
+// An area operator takes differences of its arguments; texture(name) those of s and t.
 void Liveness::add_area_reads(const Stmt& s, VarSet& live) const {
     for (const VarId id : s.args) {
-        if (program_.vars[static_cast<std::size_t>(id)].detail == Detail::Varying) {
+        const bool may_differ =
+            aux_ != nullptr ? aux_->differs(id) != NoAxis
+                            : program_.vars[static_cast<std::size_t>(id)].detail == Detail::Varying;
+        if (may_differ) {
             read(id, live);
         }
     }
@@ -214,10 +246,13 @@ void Liveness::statement(const Stmt& s, VarSet& live) {
 
 void Liveness::simple(const Stmt& s, VarSet& live) {
     const bool is_area = mode_ == LiveMode::Aux && s.op == Op::Call && builtin_of(s).has(PropArea);
-    bool wanted = has_effect(s) || is_area;
+    bool is_read = has_effect(s);
     for_each_write(
-        s, [&](VarId id, bool) { wanted = wanted || live.contains(live.slot(program_, id)); });
-    if (!wanted) {
+        s, [&](VarId id, bool) { is_read = is_read || live.contains(live.slot(program_, id)); });
+    if (is_area && is_read) {
+        read_operators_.insert(&s);
+    }
+    if (!is_read && (!is_area || (only_ != nullptr && only_ != &s))) {
         return;
     }
     keep(s);
@@ -227,11 +262,12 @@ void Liveness::simple(const Stmt& s, VarSet& live) {
         }
     });
     // At the auxiliary points light and rays give zero, whatever their arguments.
-    const bool is_zero = mode_ == LiveMode::Aux && s.op == Op::Call &&
-                         (builtin_of(s).properties & (PropLights | PropTraces)) != 0;
+    const bool is_same =
+        mode_ == LiveMode::Aux && s.op == Op::Call && aux_rule(s) == AuxRule::MainOnly;
     if (is_area) {
         add_area_reads(s, live);
-    } else if (!is_zero) {
+    }
+    if (is_read && !is_same) {
         add_reads(s, live);
     }
 }
@@ -258,22 +294,54 @@ void Liveness::jump(const Stmt& s, VarSet& live) {
 }
 
 void Liveness::branch(const Stmt& s, VarSet& live) {
+    const VarSet after = live;
     VarSet otherwise = live;
     block(s.bodies[0], live);
     block(s.bodies[1], otherwise);
     live.merge(otherwise);
     if (any_kept(s)) {
         keep(s);
+        note_handed_on(s, after);
         add_reads(s, live);
+    }
+}
+
+// For slices: what points that do not come along need to know.
+void Liveness::note_handed_on(const Stmt& s, const VarSet& after) {
+    if (mode_ != LiveMode::Aux) {
+        return;
+    }
+    std::unordered_set<VarId> found;
+    for (const Block& b : s.bodies) {
+        assigned_live(b, after, found);
+    }
+    if (!found.empty()) {
+        handed_on_[&s].merge(found);
+    }
+}
+
+void Liveness::assigned_live(const Block& b, const VarSet& after,
+                             std::unordered_set<VarId>& found) const {
+    for (const Stmt& s : b) {
+        for_each_write(s, [&](VarId id, bool) {
+            if (after.contains(after.slot(program_, id))) {
+                found.insert(id);
+            }
+        });
+        for (const Block& inner : s.bodies) {
+            assigned_live(inner, after, found);
+        }
     }
 }
 
 void Liveness::scope(const Stmt& s, VarSet& live) {
     targets_.push_back({&s, live, {}, false});
+    const VarSet after = live;
     block(s.bodies[0], live);
     targets_.pop_back();
     if (any_kept(s)) {
         keep(s);
+        note_handed_on(s, after);
     }
 }
 
@@ -287,8 +355,12 @@ void Liveness::loop(const Stmt& s, VarSet& live) {
     VarSet at_body = at_step;
     block(s.bodies[1], at_body);
     live.merge(at_body);
+    if (mode_ == LiveMode::Aux) {
+        assigned_live(s.bodies[1], targets_.back().after_continue, next_round_[&s]);
+    }
     if (any_kept(s)) {
         keep(s);
+        note_handed_on(s, after);
         add_reads(s, live);
     }
     block(s.bodies[0], live);
@@ -306,6 +378,9 @@ void Liveness::light_loop(const Stmt& s, VarSet& live) {
         targets_.push_back({&s, after, next, true});
         block(b, at_body);
         targets_.pop_back();
+        if (mode_ == LiveMode::Aux) {
+            assigned_live(b, next, next_round_[&s]);
+        }
         if (s.op == Op::Illuminance) {
             for (const int id : {SL_VAR_L, SL_VAR_Cl, SL_VAR_Ol}) {
                 at_body.erase(at_body.global_slot(id));
@@ -319,6 +394,7 @@ void Liveness::light_loop(const Stmt& s, VarSet& live) {
         s, [&](VarId id, bool) { wanted = wanted || live.contains(live.slot(program_, id)); });
     if (wanted) {
         keep(s);
+        note_handed_on(s, after);
         add_reads(s, live);
     }
 }

@@ -44,6 +44,8 @@ private:
     std::vector<std::uint64_t> words_;
 };
 
+class AuxAnalysis;
+
 enum class LiveMode {
     Results, // what reaches the outputs of the shader, or is printed
     Aux // what reaches the arguments of area operators: the slice evaluated at the auxiliary points
@@ -53,13 +55,38 @@ enum class LiveMode {
 // solar set.
 [[nodiscard]] std::uint64_t written_globals(const Program& program, const Block& b);
 
+// Differences of predefined variables that the program assigns: results of displacement shaders.
+[[nodiscard]] std::vector<VarId> written_differences(const Program& program);
+
 class Liveness {
 public:
-    Liveness(const Program& program, LiveMode mode);
+    explicit Liveness(const Program& program)
+        : Liveness(program, LiveMode::Results, nullptr, 0, nullptr) {}
+    // The slice of all area operators and of `results` (predefined variables whose differences are
+    // results), or of the one operator `only`. Without an analysis everything varying may differ.
+    Liveness(const Program& program, const AuxAnalysis* aux, std::uint64_t results,
+             const Stmt* only = nullptr)
+        : Liveness(program, LiveMode::Aux, aux, results, only) {}
     [[nodiscard]] bool matters(const Stmt& s) const { return kept_.contains(&s); }
+    // Slices: something assigned in the statement's bodies is read in the slice after it; the
+    // variable is, or in the next round of the loop.
+    [[nodiscard]] bool hands_on(const Stmt& s) const { return handed_on_.contains(&s); }
+    [[nodiscard]] bool hands_on(const Stmt& s, VarId id) const { return find(handed_on_, s, id); }
+    [[nodiscard]] bool next_round_reads(const Stmt& s, VarId id) const {
+        return find(next_round_, s, id);
+    }
+    // Slices: the value of the area operator is read in the slice.
+    [[nodiscard]] bool result_matters(const Stmt& s) const { return read_operators_.contains(&s); }
     [[nodiscard]] const VarSet& at_entry() const { return entry_; }
 
 private:
+    using Handed = std::unordered_map<const Stmt*, std::unordered_set<VarId>>;
+    Liveness(const Program& program, LiveMode mode, const AuxAnalysis* aux, std::uint64_t results,
+             const Stmt* only);
+    static bool find(const Handed& handed, const Stmt& s, VarId id) {
+        const auto it = handed.find(&s);
+        return it != handed.end() && it->second.contains(id);
+    }
     struct Target { // where a jump goes
         const Stmt* construct = nullptr;
         VarSet after_break; // Scope: after Leave
@@ -81,6 +108,8 @@ private:
     void add_area_reads(const Stmt& s, VarSet& live) const;
     [[nodiscard]] bool has_effect(const Stmt& s) const;
     [[nodiscard]] bool any_kept(const Stmt& s) const;
+    void note_handed_on(const Stmt& s, const VarSet& after);
+    void assigned_live(const Block& b, const VarSet& after, std::unordered_set<VarId>& found) const;
     void keep(const Stmt& s);
     // Set at the start of a loop body from the walk before; grows.
     VarSet& head(const Stmt& s);
@@ -89,7 +118,11 @@ private:
 
     const Program& program_;
     LiveMode mode_;
-    std::unordered_set<const Stmt*> kept_;
+    const AuxAnalysis* aux_;
+    std::uint64_t results_;
+    const Stmt* only_;
+    std::unordered_set<const Stmt*> kept_, read_operators_;
+    Handed handed_on_, next_round_;
     std::unordered_map<const Stmt*, VarSet> heads_;
     std::vector<Target> targets_;
     VarSet entry_;

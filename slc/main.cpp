@@ -7,6 +7,7 @@
 #include "runtime/base/interrupt.h"
 #include "runtime/base/seal.h"
 #include "sl_fingerprint.h"
+#include "slc/explain.h"
 #include "slc/messages.h"
 #include "slc/options.h"
 
@@ -112,7 +113,7 @@ Outcome compile(const std::string& file, const Options& options, FileResult& res
     Outcome outcome = Outcome::Done;
     for (const slc::Program& program : unit.programs) {
         if (options.explain) {
-            result.out += slc::facts_text(program, slc::analyse(program));
+            result.out += slc::explain_text(program, options.object.front);
         }
         if (!options.check) {
             outcome = std::max(outcome, build(program, options, result));

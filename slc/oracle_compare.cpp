@@ -30,8 +30,10 @@ std::string difference(const std::string& name, std::uint32_t point, int compone
 } // namespace
 
 Comparison::Comparison(const Program& program, BuildWay way)
-    : program_(program), facts_(analyse(program)), world_(runner_.strings), way_(way) {
-    object_ = runner_.build(program, facts_, way);
+    : program_(program), world_(runner_.strings), way_(way) {
+    resolve_area_operators(program_, {});
+    facts_ = analyse(program_);
+    object_ = runner_.build(program_, facts_, way);
 }
 
 std::string Comparison::run(std::uint32_t num_points) {
@@ -93,6 +95,7 @@ void Comparison::fill(rt::ShadeBatch& batch, Interpreter& oracle, std::uint32_t 
             oracle.set_global(static_cast<int>(id), static_cast<int>(i), value);
         }
     }
+    fill_differences(batch, oracle, n);
     // Varying parameters that are no outputs differ from point to point.
     for (std::size_t p = 0; p < program_.params.size(); ++p) {
         const Var& v = program_.vars[static_cast<std::size_t>(program_.params[p].var)];
@@ -108,6 +111,30 @@ void Comparison::fill(rt::ShadeBatch& batch, Interpreter& oracle, std::uint32_t 
                 batch.param_plane(static_cast<int>(p), k)[i] = x;
             }
             oracle.set_param(v.name, static_cast<int>(i), value);
+        }
+    }
+}
+
+// Differences at the auxiliary points: small, no two alike.
+void Comparison::fill_differences(rt::ShadeBatch& batch, Interpreter& oracle, std::uint32_t n) {
+    constexpr float scale = 0.03125F;
+    for (std::size_t id = 0; id < variable_rows().size(); ++id) {
+        const VariableRow& row = variable_rows()[id];
+        if (((facts_.needed_aux | facts_.written_aux) >> id & 1U) == 0) {
+            continue;
+        }
+        for (int aux = 1; aux <= 2; ++aux) {
+            for (std::uint32_t i = 0; i < n; ++i) {
+                Value value = Value::zero(row.type);
+                for (int k = 0; k < num_components(row.type); ++k) {
+                    const auto key = static_cast<std::size_t>(aux) * 40 + id;
+                    const float x = scale * OracleWorld::input(key, k, static_cast<int>(i));
+                    value.x[static_cast<std::size_t>(k)] = x;
+                    (aux == 1 ? batch.aux_u(static_cast<sl_variable>(id), k)
+                              : batch.aux_v(static_cast<sl_variable>(id), k))[i] = x;
+                }
+                oracle.set_aux(static_cast<int>(id), aux, static_cast<int>(i), value);
+            }
         }
     }
 }

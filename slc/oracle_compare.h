@@ -10,7 +10,6 @@ namespace slc {
 
 class Comparison {
 public:
-    // The program must outlive the comparison.
     Comparison(const Program& program, BuildWay way);
 
     [[nodiscard]] bool built() const { return object_ != nullptr; }
@@ -21,6 +20,7 @@ public:
 
 private:
     void fill(rt::ShadeBatch& batch, Interpreter& oracle, std::uint32_t n);
+    void fill_differences(rt::ShadeBatch& batch, Interpreter& oracle, std::uint32_t n);
     [[nodiscard]] static std::string compare_lit(const rt::ShadeBatch& batch,
                                                  const Interpreter& oracle, std::uint32_t n);
     [[nodiscard]] std::string compare_variables(rt::ShadeBatch& batch, const Interpreter& oracle,
@@ -29,7 +29,7 @@ private:
                                              std::uint32_t n);
 
     EmitRunner runner_;
-    const Program& program_;
+    Program program_; // area operators resolved
     Facts facts_;
     OracleWorld world_;
     BuildWay way_;

@@ -207,8 +207,7 @@ protected:
         options.include_dirs = {std::string(SLC_TEST_ROOT) + "/testsuite/shaders"};
         const Unit unit = compile_file(path, options, diag);
         for (const Program& program : unit.programs) {
-            if ((analyse(program).facts &
-                 (SL_FACT_area_operators | SL_FACT_random | SL_FACT_textures)) == 0) {
+            if ((analyse(program).facts & (SL_FACT_random | SL_FACT_textures)) == 0) {
                 expect_same(program, GetParam(), path + ": " + program.name);
             }
         }

@@ -82,7 +82,7 @@ void renumber(Block& b, const std::vector<VarId>& to) {
 } // namespace
 
 bool pass_dead_code(Program& program) {
-    const Liveness liveness(program, LiveMode::Results);
+    const Liveness liveness(program);
     return sweep(program.body, liveness);
 }
 

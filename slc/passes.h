@@ -10,7 +10,10 @@ namespace slc {
 
 // Uniform or varying for every local and temporary; see pass_detail.cpp. Messages may be null.
 void pass_detail(Program& program, Messages* messages);
+// Predefined variables (bits) whose differences a displacement shader hands on.
+[[nodiscard]] std::uint64_t aux_results(const Program& program);
 // Each returns whether it changed something.
+bool pass_area(Program& program);
 // Values of folded operations are rounded once, from double. Exact: only operations of which the
 // compiled code would make the same bits (SL_EXACT) are folded.
 enum class Folding : std::uint8_t { Rounded, Exact };

@@ -8,6 +8,7 @@ namespace slc {
 namespace {
 // Of the simplifying passes, each of which feeds the next; most shaders settle in four.
 constexpr int max_rounds = 16;
+
 // Until nothing changes.
 void simplify(Program& program, Folding folding) {
     for (int round = 0; round < max_rounds; ++round) {
@@ -19,6 +20,7 @@ void simplify(Program& program, Folding folding) {
         }
     }
 }
+
 } // namespace
 
 void run_passes(Program& program, const CompileOptions& options, Messages* messages) {
@@ -33,6 +35,26 @@ void run_passes(Program& program, const CompileOptions& options, Messages* messa
         }
         pass_detail(program, nullptr);
     }
+    pass_compact(program);
+}
+
+// Dead code goes even without optimisation: most of the differences that pass_area makes are read
+// by nobody, and what the engine must supply depends on those that are.
+void resolve_area_operators(Program& program, const CompileOptions& options) {
+    if (!pass_area(program)) {
+        return;
+    }
+    if (options.optimise) {
+        const Folding folding = options.exact ? Folding::Exact : Folding::Rounded;
+        simplify(program, folding);
+        pass_detail(program, nullptr);
+        if (pass_cse(program)) { // the three points have much in common
+            simplify(program, folding);
+        }
+    } else {
+        pass_dead_code(program);
+    }
+    pass_detail(program, nullptr);
     pass_compact(program);
 }
 

@@ -52,7 +52,7 @@ TEST(Needed, Exact) {
         {"surface a() { Ci = diffuse(N); }", "P N"},      // what the built-in reads
         {"surface a() { P = 0; Ci = diffuse(N); }", "N"}, // ... unless it was set
         {"surface a() { Ci = faceforward(N, I) . I; }", "N Ng I"},
-        {"surface a() { Ci = texture(\"x\"); }", "du dv s t"},
+        {"surface a() { Ci = texture(\"x\"); }", "s t"},
         {"surface a() { Ci = texture(\"x\", u, v, u, v, u, v, u, v); }", "u v"},
         {"surface a() { Ci = 0; while (s > 1) { Ci += Cs; s = 0; } }", "s Cs"},
         {"surface a() { Ci = 0; while (s > 1) { float x = Os . Os; s = 0; } }",
@@ -72,7 +72,7 @@ TEST(Needed, Exact) {
         {"light a() { solar() Cl = 1; }", "Ns"},
         {"light a() { Cl += 1; }", "Cl"},
         {"displacement a() { P += N; }", "P N"},
-        {"displacement a() { N = calculatenormal(P); }", "P N Ng du dv"},
+        {"displacement a() { N = calculatenormal(P); }", "N Ng dPdu dPdv du dv"},
         {"volume a() { Ci = mix(Ci, color 0, length(I)); }", "I Ci"},
         {"imager a() { Ci += 1 - alpha; alpha = 1; }", "Ci alpha"},
     };
@@ -95,7 +95,7 @@ TEST(Needed, AuxiliarySlice) {
     EXPECT_EQ(names(facts_of("surface a() { color x = diffuse(N); Ci = Du(x); }").needed_aux),
               ""); // lights are 0 there
     EXPECT_EQ(names(facts_of("surface a() { float x; if (u > .5) x = s; Ci = Du(x); }").needed_aux),
-              "u s");
+              "s"); // u differs by du
     EXPECT_EQ(names(facts_of("surface a() { Ci = texture(\"x\"); }").needed_aux), "s t");
     EXPECT_EQ(names(facts_of("surface a() { Ci = Cs; }").needed_aux), "");
 }

@@ -139,6 +139,15 @@ void AuxAnalysis::seed(std::uint64_t results) {
     }
 }
 
+Axes AuxAnalysis::differs(VarId id) const {
+    const auto i = static_cast<std::size_t>(id);
+    if (i < differs_.size()) {
+        return differs_[i];
+    }
+    return is_global(var(id)) ? axes_of_global(program_.shader_type, var(id).index) & axes_
+                              : NoAxis;
+}
+
 unsigned AuxAnalysis::global_axes(int variable) const {
     unsigned axes = axes_of_global(program_.shader_type, variable);
     for (std::size_t i = 0; i < program_.vars.size(); ++i) { // assigned: what the program says

@@ -42,10 +42,9 @@ public:
     // `slice`: a coarse slice, for what constructs hand on.
     AuxAnalysis(const Program& program, std::uint64_t results, const Liveness& slice);
 
-    [[nodiscard]] Axes differs(VarId id) const { return differs_[static_cast<std::size_t>(id)]; }
-    [[nodiscard]] bool differs(VarId id, int axis) const {
-        return (differs_[static_cast<std::size_t>(id)] >> axis & 1) != 0;
-    }
+    // Predefined variables that the program did not mention count too, once it has them.
+    [[nodiscard]] Axes differs(VarId id) const;
+    [[nodiscard]] bool differs(VarId id, int axis) const { return (differs(id) >> axis & 1) != 0; }
     // Loop, Scope, Illuminance, Gather: some points may leave before others.
     [[nodiscard]] bool splits(const Stmt& s) const { return splits_.contains(&s); }
     // ... may skip the rest of an iteration.

@@ -110,7 +110,7 @@ public:
         if (s.op == Op::Continue && !same_round) {
             return true;
         }
-        for (std::size_t k = i; k < path_.size(); ++k) {
+        for (std::size_t k = path_.size(); k-- > i;) {
             if (path_[k].parted) {
                 path_[k].undo = true;
                 return false;
@@ -124,7 +124,7 @@ public:
             interpreter_.stop();
             return true;
         }
-        if (aux_rule(s) == AuxRule::Function) {
+        if (aux_rule(s) == AuxRule::Function || builtin_of(s).has(PropMessage)) {
             return false;
         }
         const auto record = oracle_.records_.find(AuxOracle::key(path_, s));

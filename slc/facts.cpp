@@ -60,9 +60,12 @@ Facts Analysis::run() {
         facts_.written_aux |= bit(var(id).index);
     }
     find_aux_params();
-    const bool any_aux = facts_.needed_aux != 0 ||
-                         std::find(facts_.aux_params.begin(), facts_.aux_params.end(), true) !=
-                             facts_.aux_params.end();
+    const bool any_param = std::find(facts_.aux_params.begin(), facts_.aux_params.end(), true) !=
+                           facts_.aux_params.end();
+    const bool any_aux = facts_.needed_aux != 0 || any_param;
+    if (any_param) { // their differences are taken along the steps
+        facts_.needed |= bit(SL_VAR_du) | bit(SL_VAR_dv);
+    }
     facts_.facts |= any_aux ? SL_FACT_area_operators : 0;
     return std::move(facts_);
 }
@@ -89,6 +92,9 @@ void Analysis::statement(const Stmt& s) {
     switch (s.op) {
     case Op::Call:
         call(s);
+        break;
+    case Op::Difference:
+        facts_.facts |= names_object_space(s) ? SL_FACT_object_space : 0;
         break;
     case Op::Illuminance:
         facts_.facts |= SL_FACT_lights;
@@ -184,7 +190,11 @@ void Analysis::explain(const Stmt& s) {
     });
     for (int i = 0; s.op == Op::Call && i < SL_VAR_COUNT; ++i) {
         if ((builtin_of(s).reads >> i & 1) != 0) {
-            reason(i, s, "read by " + std::string(builtin_of(s).name) + "()");
+            std::string_view name = builtin_of(s).name;
+            if (builtin_of(s).has(PropHidden)) { // what the user wrote
+                name.remove_suffix(std::string_view("_d").size());
+            }
+            reason(i, s, "read by " + std::string(name) + "()");
         }
     }
 }

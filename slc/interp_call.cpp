@@ -354,7 +354,7 @@ bool Interpreter::area(const Stmt& s, const Mask& mask, int point, Value& result
 void Interpreter::fallback(const Stmt& s, int point, Value& result) {
     const BuiltinRow& row = builtin_of(s);
     std::fill(result.x.begin(), result.x.end(), 0.0);
-    if (row.name == "texture" && row.result.type == Type::Color &&
+    if ((row.name == "texture" || row.name == "texture_d") && row.result.type == Type::Color &&
         at(s.args[0], point).text().empty()) {
         put(result, {1, 1, 1});
     } else if (row.name == "visibility" || row.name == "transmission") {

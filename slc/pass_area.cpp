@@ -13,6 +13,7 @@
 #include "slc/propagation.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace slc {
 
@@ -90,7 +91,8 @@ void Propagation::epilogue(std::uint64_t results) {
     }
 }
 
-// After a statement that points may leave for good, the rest runs while one of them is here.
+// After a statement that points may leave for good, the rest runs while one of them is still in
+// what they would leave.
 void Propagation::block(const Block& b) {
     Block* const outer = out_;
     for (std::size_t i = 0; i < b.size(); ++i) {
@@ -99,10 +101,12 @@ void Propagation::block(const Block& b) {
             main_only(b[i]);
             continue;
         }
+        const std::size_t before = std::exchange(outermost_left_, nothing_left);
         statement(b[i]);
-        const bool more = i + 1 < b.size();
-        if (more && analysis_.loses_points(b[i]) && !regions_.empty()) {
-            Stmt& rest = emit(Op::If, no_var, {present(regions_.back())});
+        const std::size_t left = outermost_left_;
+        outermost_left_ = std::min(before, left);
+        if (i + 1 < b.size() && left < regions_.size()) {
+            Stmt& rest = emit(Op::If, no_var, {present(regions_[left])});
             rest.bodies.resize(2);
             out_ = &rest.bodies[0];
             guard_block_ = nullptr;

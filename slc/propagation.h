@@ -47,6 +47,7 @@ private:
         Three in = {no_var, no_var, no_var};
         Three real = {no_var, no_var, no_var};
         std::vector<Private> vars;
+        bool is_arm = false;    // a side of a condition
         bool wants_all = false; // auxiliary points run it even where the main point is not there
     };
     struct Target { // a construct that jumps may leave
@@ -151,8 +152,8 @@ private:
     bool set_component(const Stmt& s);
     void chain(const Stmt& s);
     void with_outputs(const Stmt& s);
-    VarId call_rule(const Stmt& s, const std::vector<Dual>& a, VarId result, int axis);
-    VarId shifted_call(const Stmt& s, const std::vector<Dual>& a, int axis);
+    int explicit_row(const Stmt& s, std::vector<Dual>& a);
+    VarId call_rule(int number, Type type, const std::vector<Dual>& a, VarId result, int axis);
     VarId call_value(int row, Type type, std::vector<VarId> args);
     void area_operator(const Stmt& s);
     VarId derivative(const Stmt& s);
@@ -177,7 +178,9 @@ private:
     std::unordered_set<std::string> names_;
     std::unordered_map<std::string, int> name_counts_;
     std::unordered_set<VarId> written_; // predefined variables and parameters that are assigned
+    static constexpr std::size_t nothing_left = ~std::size_t(0);
     std::vector<Region> regions_;
+    std::size_t outermost_left_ = nothing_left; // region that jumps of the statement in work leave
     std::vector<Target> targets_;
     const Block* guard_block_ = nullptr; // its last statement holds main-only statements ...
     std::size_t guard_at_ = 0;           // ... if it still has that size

@@ -78,6 +78,7 @@ void Propagation::function(const Stmt& s) {
     for (const VarId id : s.args) {
         a.push_back(read(id));
     }
+    const int like = explicit_row(s, a);
     Stmt m = mapped(s);
     const VarId target = m.dst;
     const bool aliased = std::find(m.args.begin(), m.args.end(), target) != m.args.end();
@@ -89,7 +90,7 @@ void Propagation::function(const Stmt& s) {
     Pair d = {no_var, no_var};
     for (int axis = 0; axis < 2; ++axis) {
         if (analysis_.differs(s.dst, axis)) {
-            d[at(axis)] = call_rule(s, a, result, axis);
+            d[at(axis)] = call_rule(like, var(s.dst).type, a, result, axis);
             const VarId to = difference(s.dst, axis);
             const VarId from = d[at(axis)];
             if (from == no_var) {
@@ -110,70 +111,60 @@ VarId Propagation::call_value(int row, Type type, std::vector<VarId> args) {
     return t;
 }
 
-VarId Propagation::call_rule(const Stmt& s, const std::vector<Dual>& a, VarId result, int axis) {
-    const BuiltinRow& row = builtin_of(s);
-    const Type type = var(s.dst).type;
-    const std::vector<int>& places = difference_places(s.builtin);
-    const auto is_place = [&](std::size_t i) {
-        return std::find(places.begin(), places.end(), static_cast<int>(i)) != places.end();
-    };
+// faceforward(N, I) looks at Ng by itself, which differs too: the form that is told.
+int Propagation::explicit_row(const Stmt& s, std::vector<Dual>& a) {
+    if (builtin_of(s).body != "faceforward") {
+        return s.builtin;
+    }
+    const bool has_Ng = axes_of_global(program_.shader_type, SL_VAR_Ng) != NoAxis;
+    a.push_back(has_Ng ? read(global(SL_VAR_Ng, 0)) : a[0]);
+    return find_builtin_by_body("faceforward_ref");
+}
+
+VarId Propagation::call_rule(int number, Type type, const std::vector<Dual>& a, VarId result,
+                             int axis) {
+    const BuiltinRow& row = builtin_rows()[static_cast<std::size_t>(number)];
+    const std::vector<int>& places = difference_places(number);
     std::vector<VarId> here;
     std::vector<std::size_t> differing;
-    bool elsewhere = false; // knots, or state the row reads by itself
+    bool elsewhere = false; // in knots
     for (std::size_t i = 0; i < a.size(); ++i) {
         here.push_back(a[i].value);
         if (a[i].d[at(axis)] != no_var) {
             differing.push_back(i);
-            elsewhere = elsewhere || !is_place(i);
+            elsewhere = elsewhere || std::find(places.begin(), places.end(), static_cast<int>(i)) ==
+                                         places.end();
         }
     }
-    const bool reads_normal = row.body == "faceforward";
-    if (differing.empty() && !reads_normal) {
+    if (differing.empty()) {
         return no_var;
     }
     if (row.has(PropLinear) && differing.size() == 1 && !elsewhere) {
         here[differing[0]] = a[differing[0]].d[at(axis)];
-        return call_value(s.builtin, type, std::move(here));
+        return call_value(number, type, std::move(here));
     }
-    if (row.has(PropDiff) && !elsewhere && !reads_normal) {
+    if (row.has(PropDiff) && !elsewhere) {
         for (const int place : places) {
             const Dual& x = a[static_cast<std::size_t>(place)];
             here.push_back(x.d[at(axis)] == no_var ? zero(x.value) : x.d[at(axis)]);
         }
         const VarId t = temp(type);
-        emit(Op::Difference, t, std::move(here)).builtin = s.builtin;
+        emit(Op::Difference, t, std::move(here)).builtin = number;
         return t;
     }
-    return minus(shifted_call(s, a, axis), result);
-}
-
-// The call at the other point. faceforward(N, I) looks at Ng by itself, whose difference counts
-// too.
-VarId Propagation::shifted_call(const Stmt& s, const std::vector<Dual>& a, int axis) {
     std::vector<VarId> there;
     for (const Dual& x : a) {
         there.push_back(moved(x, axis));
     }
-    int row = s.builtin;
-    if (builtin_of(s).body == "faceforward") {
-        row = find_builtin_by_body("faceforward_ref");
-        const bool has_Ng = axes_of_global(program_.shader_type, SL_VAR_Ng) != NoAxis;
-        there.push_back(has_Ng ? moved(read(global(SL_VAR_Ng, 0)), axis) : there[0]);
-    }
-    return call_value(row, var(s.dst).type, std::move(there));
+    return minus(call_value(number, type, std::move(there)), result);
 }
 
 // min(a, b, c) = min(min(a, b), c)
 void Propagation::chain(const Stmt& s) {
-    Stmt step;
-    step.op = Op::Call;
-    step.builtin = s.builtin;
-    step.loc = s.loc;
     std::vector<Dual> a;
     for (const VarId id : s.args) {
         a.push_back(read(id));
     }
-    step.dst = s.dst;
     Dual sum = a[0];
     for (std::size_t i = 1; i < a.size(); ++i) {
         const std::vector<Dual> two = {sum, a[i]};
@@ -181,7 +172,7 @@ void Propagation::chain(const Stmt& s) {
         next.value = call_value(s.builtin, var(s.dst).type, {sum.value, a[i].value});
         for (int axis = 0; axis < 2; ++axis) {
             if (analysis_.differs(s.dst, axis)) {
-                next.d[at(axis)] = call_rule(step, two, next.value, axis);
+                next.d[at(axis)] = call_rule(s.builtin, var(s.dst).type, two, next.value, axis);
             }
         }
         sum = next;
@@ -302,9 +293,12 @@ VarId Propagation::derivative(const Stmt& s) {
         const int axis = name == "Du" ? 0 : 1;
         const VarId step = global(axis == 0 ? SL_VAR_du : SL_VAR_dv, 0);
         const VarId d = x.d[at(axis)];
+        // In lights the engine may have no step.
+        const bool has_step = program_.shader_type != SL_SHADER_light;
         return d == no_var ? constant(type, 0)
                : d == step ? constant(type, 1)
-                           : value(Op::Div, type, {d, step});
+               : has_step  ? value(Op::Div, type, {d, step})
+                           : ratio(d, step, type);
     }
     const Dual y = read(s.args[1]);
     VarId sum = no_var;

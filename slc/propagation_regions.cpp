@@ -79,7 +79,7 @@ Propagation::Region& Propagation::enter(const Three& in, bool fixed, bool wants_
     for (std::size_t k = 0; k < 3; ++k) {
         const VarId real = both(outer[k], in[k]);
         r.in[k] = fixed ? in[k] : variable(in[k], names[k]);
-        r.real[k] = fixed ? real : outer[k] == no_var ? r.in[k] : variable(real, real_names[k]);
+        r.real[k] = fixed ? real : variable(real, real_names[k]);
     }
     regions_.push_back(std::move(r));
     return regions_.back();
@@ -174,8 +174,11 @@ void Propagation::commit(const Region& from, const Three& who) {
     }
 }
 
-// The points that are in all regions from `target` on inwards leave it.
+// The points that are in all regions from `target` on inwards leave it. For the code that follows
+// they are taken along as if they had not, and had not taken the side of the condition that the
+// jump stands on.
 void Propagation::leave(std::size_t target) {
+    outermost_left_ = std::min(outermost_left_, target);
     Three who = always;
     for (std::size_t r = target; r < regions_.size(); ++r) {
         for (std::size_t k = 0; k < 3; ++k) {
@@ -191,10 +194,10 @@ void Propagation::leave(std::size_t target) {
         for (std::size_t k = 0; k < 3; ++k) {
             const Region& at = regions_[r];
             const VarId stays = negated(who[k]);
-            emit(Op::And, at.in[k], {at.in[k], stays});
-            if (at.real[k] != at.in[k]) {
-                emit(Op::And, at.real[k], {at.real[k], stays});
+            if (r == target || (at.is_arm && r + 1 == regions_.size())) {
+                emit(Op::And, at.in[k], {at.in[k], stays});
             }
+            emit(Op::And, at.real[k], {at.real[k], stays});
         }
     }
 }
@@ -234,7 +237,7 @@ void Propagation::parted_branch(const Stmt& s) {
         }
         const bool lossy = loses(analysis_, b);
         const std::vector<VarId> assigned = private_candidates(b);
-        enter(*taken[i], !lossy, (wants_all && !assigned.empty()) || lossy);
+        enter(*taken[i], !lossy, (wants_all && !assigned.empty()) || lossy).is_arm = true;
         const VarId run = present(regions_.back());
         Block inner;
         Block* const outer = out_;
@@ -308,9 +311,7 @@ void Propagation::parted_loop(const Stmt& s) {
     out_->push_back(std::move(m));
     if (region) {
         const Region r = regions_.back();
-        if (r.real != r.in) { // points that were taken along
-            commit(r, r.in);
-        }
+        commit(r, r.in); // points that were taken along
         withdraw();
     }
     targets_.pop_back();
@@ -327,9 +328,7 @@ VarId Propagation::another_round(const Stmt& s) {
     commit(r, gone);
     for (std::size_t k = 0; k < 3; ++k) {
         emit(Op::And, r.in[k], {r.in[k], c[k]});
-        if (r.real[k] != r.in[k]) {
-            emit(Op::And, r.real[k], {r.real[k], c[k]});
-        }
+        emit(Op::And, r.real[k], {r.real[k], c[k]});
     }
     return present(r);
 }

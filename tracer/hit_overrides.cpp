@@ -96,6 +96,12 @@ void HitShader::bind_overrides(const ShadingClass& c, Stage stage, rt::ShadeBatc
             }
         } else if (float* planes = batch.param_plane(o.param)) {
             frame_.world->fill_primitive_variable(hits, o.name, batch.stride(), planes);
+            if (float* by_u = batch.param_aux(o.param, 1)) {
+                frame_.world->fill_primitive_differences(hits, o.name,
+                                                         {batch.plane(SL_VAR_du),
+                                                          batch.plane(SL_VAR_dv), batch.stride(),
+                                                          by_u, batch.param_aux(o.param, 2)});
+            }
         } else {
             values_.assign(floats_of(param) * SL_LANES_MAX, 0);
             frame_.world->fill_primitive_variable(hits.first(1), o.name, SL_LANES_MAX,

@@ -135,7 +135,7 @@ float step_of(int variable, int component, int point, int aux) {
 double component_of(int variable, int component, int point, int aux) {
     switch (variable) {
     case SL_VAR_u:
-        return 0.01 * point + (aux == 1 ? component_of(SL_VAR_du, 0, point, 0) : 0);
+        return 0.003 + 0.01 * point + (aux == 1 ? component_of(SL_VAR_du, 0, point, 0) : 0);
     case SL_VAR_v:
         return 0.5 + 0.013 * point + (aux == 2 ? component_of(SL_VAR_dv, 0, point, 0) : 0);
     case SL_VAR_du:

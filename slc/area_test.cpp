@@ -4,6 +4,7 @@
 // of propagation are exact), and as emitted code with 8 and 4 lanes in float.
 #include "slc/area_cases.h"
 #include "slc/aux_oracle.h"
+#include "slc/explain.h"
 #include "slc/oracle_compare.h"
 #include "slc/slc_testing.h"
 
@@ -134,6 +135,32 @@ std::string case_name(const ::testing::TestParamInfo<AreaCase>& info) {
 
 INSTANTIATE_TEST_SUITE_P(Cases, Area, ::testing::ValuesIn(area_cases().begin(), area_cases().end()),
                          case_name);
+
+TEST(Explain, TellsSlices) {
+    const auto c = compile("surface t(float k = 2; varying float w = 0;) {\n"
+                           "    float x = s * k;\n"
+                           "    float y = Du(x * w);\n"
+                           "    Ci = Cs * y + texture(\"map\") + Du(k);\n"
+                           "}");
+    ASSERT_EQ(c.unit.programs.size(), 1U) << c.messages;
+    const std::string text = explain_text(c.unit.programs[0], {});
+    for (const char* wanted :
+         {"  s       read at test.sl:2:17\n", "at auxiliary points  s t w\n",
+          "  Du()               test.sl:3:15, along u\n                     from s w; slice: 2 "
+          "operations, lines 2-3\n",
+          "its argument is the same at all points\n",
+          "auxiliary evaluation ends after test.sl:4:37\n",
+          "texture()          test.sl:4:19, maps\n", "facts: area_operators textures"}) {
+        EXPECT_NE(text.find(wanted), std::string::npos) << wanted << "\n" << text;
+    }
+}
+
+TEST(Explain, NothingToTell) {
+    const auto c = compile("surface t() { Ci = 1; }");
+    const std::string text = explain_text(c.unit.programs[0], {});
+    EXPECT_NE(text.find("needed variables\n  none\n"), std::string::npos) << text;
+    EXPECT_NE(text.find("no auxiliary evaluation\n"), std::string::npos) << text;
+}
 
 TEST(AreaDisplacement, HandsDifferencesOn) {
     for (const char* body :

@@ -72,7 +72,8 @@ surface derivatives(uniform float k = 2;)
     CHECK3("moved along the normal", Du(PP) - dPdu, .5 * normalize(N), 1e-4)
     CHECK("random", Du(random()) * 0, 0, 0)
     CHECK("lights", comp(Du(diffuse(N)), 0), 0, 0)
+    float sdu = Du(s), sdv = Dv(s);
     s = 3 * s;
-    CHECK("assigned s", Deriv(s, s) * 0 + Du(s) + Dv(s), 3 * (Deriv(s, u) + Deriv(s, v)) / 3, 1e-4)
+    CHECK("assigned s", Du(s) + Dv(s), 3 * (sdu + sdv), 1e-4)
     END_CHECKS
 }

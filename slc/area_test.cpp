@@ -149,7 +149,7 @@ TEST(Explain, TellsSlices) {
           "  Du()               test.sl:3:15, along u\n                     from s w; slice: 2 "
           "operations, lines 2-3\n",
           "its argument is the same at all points\n",
-          "auxiliary evaluation ends after test.sl:4:37\n",
+          "auxiliary evaluation ends after test.sl:4:36\n",
           "texture()          test.sl:4:19, maps\n", "facts: area_operators textures"}) {
         EXPECT_NE(text.find(wanted), std::string::npos) << wanted << "\n" << text;
     }

@@ -94,7 +94,7 @@ void Analysis::statement(const Stmt& s) {
         call(s);
         break;
     case Op::Difference:
-        facts_.facts |= names_object_space(s) ? SL_FACT_object_space : 0;
+        facts_.facts |= spaces(s);
         break;
     case Op::Illuminance:
         facts_.facts |= SL_FACT_lights;
@@ -140,7 +140,8 @@ std::uint32_t Analysis::spaces(const Stmt& s) const {
     std::uint32_t found = 0;
     for (const VarId id : s.args) {
         const Var& v = var(id);
-        if (s.op != Op::Call || !builtin_of(s).has(PropSpaces) || v.type != Type::String) {
+        const bool calls = s.op == Op::Call || s.op == Op::Difference;
+        if (!calls || !builtin_of(s).has(PropSpaces) || v.type != Type::String) {
             continue;
         }
         const bool known = v.kind == VarKind::Const;

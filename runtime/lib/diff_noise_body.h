@@ -10,6 +10,9 @@
 /* Continuing the polynomial errs by about 10 d^3, a difference of two values by 6e-8: at 2^-9 both
  * are below 1e-4 of the difference. */
 #define NEAR_STEP 0x1p-9f
+/* From this length on two values are subtracted in any case: they differ enough (6e-8 of 2^-7 is
+ * 8e-6), and where all lanes step that far they cost less. */
+#define LONG_STEP 0x1p-7f
 
 /* The loops over axes must vanish, so that axes live in registers. */
 #define NOISE_UNROLL _Pragma("GCC unroll 4")
@@ -169,21 +172,18 @@ SL_INLINE FN(axis_) FN(axis_at_)(I index, F f, F period, int dims, int k, int pe
     return r;
 }
 
-SL_INLINE FN(cell4_) FN(cell_around_)(const FN(place4_) * p, int dims, int periodic) {
-    FN(cell4_) r;
+SL_INLINE void FN(cell_around_)(FN(cell4_) * r, const FN(place4_) * p, int dims, int periodic) {
     NOISE_UNROLL for (int k = 0; k < dims; k++) {
         const F whole = FN(floor)(p->a[k]);
-        r.index[k] = FN(whole_of_f)(
+        r->index[k] = FN(whole_of_f)(
             periodic ? FN(wrapped_)(whole, FN(rounded_period_)(p->period[k])) : whole);
-        r.axis[k] = FN(axis_at_)(r.index[k], p->a[k] - whole, p->period[k], dims, k, periodic);
+        r->axis[k] = FN(axis_at_)(r->index[k], p->a[k] - whole, p->period[k], dims, k, periodic);
     }
-    return r;
 }
 
 /* Cells are counted in integers: at positions from 2^24 on floats cannot. */
-SL_INLINE FN(cell4_) FN(cell_after_)(const FN(cell4_) * from, const FN(place4_) * p,
-                                     const FN(place4_) * d, int dims, int periodic) {
-    FN(cell4_) r;
+SL_INLINE void FN(cell_after_)(FN(cell4_) * r, const FN(cell4_) * from, const FN(place4_) * p,
+                               const FN(place4_) * d, int dims, int periodic) {
     NOISE_UNROLL for (int k = 0; k < dims; k++) {
         const F sum = from->axis[k].f + d->a[k], crossed = FN(floor)(sum);
         F period = p->period[k];
@@ -192,32 +192,34 @@ SL_INLINE FN(cell4_) FN(cell_after_)(const FN(cell4_) * from, const FN(place4_) 
                     size = FN(rounded_period_)(period + d->period[k]);
             const F kept = FN(wrapped_)(FN(float_of_i)(from->index[k]) + crossed, size);
             const F other = FN(wrapped_)(FN(floor)(p->a[k]) + crossed, size);
-            r.index[k] = FN(whole_of_f)(SEL(EQ(size, size0), kept, other));
+            r->index[k] = FN(whole_of_f)(SEL(EQ(size, size0), kept, other));
             period = size;
         } else {
-            r.index[k] = FN(add_i)(from->index[k], FN(whole_of_f)(crossed));
+            r->index[k] = FN(add_i)(from->index[k], FN(whole_of_f)(crossed));
         }
-        r.axis[k] = FN(axis_at_)(r.index[k], sum - crossed, period, dims, k, periodic);
+        r->axis[k] = FN(axis_at_)(r->index[k], sum - crossed, period, dims, k, periodic);
     }
-    return r;
 }
 
 /* Where the step must be taken as a difference of two values. */
 SL_INLINE I FN(far_step_)(const FN(cell4_) * from, const FN(place4_) * p, const FN(place4_) * d,
                           int dims, int periodic) {
-    I leaves = KI(0), is_long = KI(0), other = KI(0);
+    I leaves = KI(0), is_long = KI(0), is_very_long = KI(0), other = KI(0);
     NOISE_UNROLL for (int k = 0; k < dims; k++) {
         const F sum = from->axis[k].f + d->a[k];
         leaves = leaves | ~(LE(K(0), sum) & LE(sum, K(1)));
-        is_long = is_long | ~LE(FN(abs)(d->a[k]), K(NEAR_STEP));
+        const F size = FN(abs)(d->a[k]);
+        is_long = is_long | ~LE(size, K(NEAR_STEP));
+        is_very_long = is_very_long | ~LT(size, K(LONG_STEP));
         if (periodic)
             other = other | ~EQ(FN(rounded_period_)(p->period[k]),
                                 FN(rounded_period_)(p->period[k] + d->period[k]));
     }
-    return (leaves & is_long) | other;
+    return (leaves & is_long) | is_very_long | other;
 }
 
-SL_INLINE F FN(sum_n_)(const FN(cell4_) * at, int dims, uint32_t c) {
+/* Not inlined: most packets need it seldom. */
+static __attribute__((noinline)) F FN(sum_n_)(const FN(cell4_) * at, int dims, uint32_t c) {
     const FN(axis_)* x = at->axis;
     return dims == 1   ? FN(sum_1_)(x[0], c)
            : dims == 2 ? FN(sum_2_)(x[0], x[1], c)
@@ -254,19 +256,63 @@ SL_INLINE F FN(value_change_)(F sum, F change, int dims) {
 SL_INLINE void FN(noise_step_)(const FN(place4_) * p, const FN(place4_) * d, int dims, int periodic,
                                int channels, F* out) {
     static const uint32_t multipliers[3] = {NOISE_C0, NOISE_C1, NOISE_C2};
-    const FN(cell4_) from = FN(cell_around_)(p, dims, periodic);
+    FN(cell4_) from;
+    FN(cell_around_)(&from, p, dims, periodic);
+    const I far = FN(far_step_)(&from, p, d, dims, periodic);
+    const int any_far = FN(any)(far), any_near = FN(any)(~far);
+    FN(cell4_) to;
+    if (any_far)
+        FN(cell_after_)(&to, &from, p, d, dims, periodic);
     FN(axis3_) axis[4];
     NOISE_UNROLL for (int k = 0; k < dims; k++) axis[k] =
         FN(moving_axis_)(from.axis[k], d->a[k], d->a[k]);
-    const I far = FN(far_step_)(&from, p, d, dims, periodic);
-    const int any_far = FN(any)(far);
-    const FN(cell4_) to = any_far ? FN(cell_after_)(&from, p, d, dims, periodic) : from;
     for (int c = 0; c < channels; c++) {
-        const FN(three_) sum = FN(sum3_n_)(axis, dims, multipliers[c]);
-        F change = sum.u;
+        const uint32_t m = multipliers[c];
+        F at, change = K(0);
+        if (any_near) {
+            const FN(three_) sum = FN(sum3_n_)(axis, dims, m);
+            at = sum.at, change = sum.u;
+        } else {
+            at = FN(sum_n_)(&from, dims, m);
+        }
         if (any_far)
-            change = SEL(far, FN(sum_n_)(&to, dims, multipliers[c]) - sum.at, change);
-        out[c] = FN(value_change_)(sum.at, change, dims);
+            change = SEL(far, FN(sum_n_)(&to, dims, m) - at, change);
+        out[c] = FN(value_change_)(at, change, dims);
+    }
+}
+
+/* `channels` values and their changes by the steps u and v, from one look at the lattice. */
+SL_INLINE void FN(noise_steps_)(const FN(place4_) * p, const FN(place4_) * u, const FN(place4_) * v,
+                                int dims, int channels, F* at, F* by_u, F* by_v) {
+    static const uint32_t multipliers[3] = {NOISE_C0, NOISE_C1, NOISE_C2};
+    FN(cell4_) from;
+    FN(cell_around_)(&from, p, dims, 0);
+    const I far_u = FN(far_step_)(&from, p, u, dims, 0),
+            far_v = FN(far_step_)(&from, p, v, dims, 0);
+    const int any_u = FN(any)(far_u), any_v = FN(any)(far_v), any_near = FN(any)(~(far_u & far_v));
+    FN(cell4_) to_u, to_v;
+    if (any_u)
+        FN(cell_after_)(&to_u, &from, p, u, dims, 0);
+    if (any_v)
+        FN(cell_after_)(&to_v, &from, p, v, dims, 0);
+    FN(axis3_) axis[4];
+    NOISE_UNROLL for (int k = 0; k < dims; k++) axis[k] =
+        FN(moving_axis_)(from.axis[k], u->a[k], v->a[k]);
+    for (int c = 0; c < channels; c++) {
+        const uint32_t m = multipliers[c];
+        FN(three_) sum;
+        if (any_near)
+            sum = FN(sum3_n_)(axis, dims, m);
+        else
+            sum = FN(three_of_)(FN(sum_n_)(&from, dims, m), K(0), K(0));
+        if (any_u)
+            sum.u = SEL(far_u, FN(sum_n_)(&to_u, dims, m) - sum.at, sum.u);
+        if (any_v)
+            sum.v = SEL(far_v, FN(sum_n_)(&to_v, dims, m) - sum.at, sum.v);
+        const F value = FN(scaled_)(sum.at, FN(noise_scale_)(dims));
+        at[c] = dims < 4 ? value : FN(clamp_f)(value, K(0), K(1));
+        by_u[c] = FN(value_change_)(sum.at, sum.u, dims);
+        by_v[c] = FN(value_change_)(sum.at, sum.v, dims);
     }
 }
 
@@ -368,6 +414,50 @@ V FN(pnoise_3_4_d)(V p, F t, V pp, F pt, V dp, F dt, V dpp, F dpt) {
                               PERIODIC(FN(place_4_)(dp, dt), FN(place_4_)(dpp, dpt)), 4, 1);
 }
 #undef PERIODIC
+
+/* --- value and both changes at once: what calls of noise become when the compiler meets all three
+ * ---------------------------- */
+
+SL_INLINE F FN(one_uv_)(FN(place4_) p, FN(place4_) u, FN(place4_) v, int dims, F* by_u, F* by_v) {
+    F at[1];
+    FN(noise_steps_)(&p, &u, &v, dims, 1, at, by_u, by_v);
+    return at[0];
+}
+SL_INLINE V FN(three_uv_)(FN(place4_) p, FN(place4_) u, FN(place4_) v, int dims, V* by_u, V* by_v) {
+    F at[3], cu[3], cv[3];
+    FN(noise_steps_)(&p, &u, &v, dims, 3, at, cu, cv);
+    *by_u = FN(make_3)(cu[0], cu[1], cu[2]);
+    *by_v = FN(make_3)(cv[0], cv[1], cv[2]);
+    return FN(make_3)(at[0], at[1], at[2]);
+}
+
+F FN(noise_f_1_uv)(F x, F xu, F xv, F* by_u, F* by_v) {
+    return FN(one_uv_)(FN(place_1_)(x), FN(place_1_)(xu), FN(place_1_)(xv), 1, by_u, by_v);
+}
+F FN(noise_f_2_uv)(F x, F y, F xu, F yu, F xv, F yv, F* by_u, F* by_v) {
+    return FN(one_uv_)(FN(place_2_)(x, y), FN(place_2_)(xu, yu), FN(place_2_)(xv, yv), 2, by_u,
+                       by_v);
+}
+F FN(noise_f_3_uv)(V p, V u, V v, F* by_u, F* by_v) {
+    return FN(one_uv_)(FN(place_3_)(p), FN(place_3_)(u), FN(place_3_)(v), 3, by_u, by_v);
+}
+F FN(noise_f_4_uv)(V p, F t, V u, F tu, V v, F tv, F* by_u, F* by_v) {
+    return FN(one_uv_)(FN(place_4_)(p, t), FN(place_4_)(u, tu), FN(place_4_)(v, tv), 4, by_u, by_v);
+}
+V FN(noise_3_1_uv)(F x, F xu, F xv, V* by_u, V* by_v) {
+    return FN(three_uv_)(FN(place_1_)(x), FN(place_1_)(xu), FN(place_1_)(xv), 1, by_u, by_v);
+}
+V FN(noise_3_2_uv)(F x, F y, F xu, F yu, F xv, F yv, V* by_u, V* by_v) {
+    return FN(three_uv_)(FN(place_2_)(x, y), FN(place_2_)(xu, yu), FN(place_2_)(xv, yv), 2, by_u,
+                         by_v);
+}
+V FN(noise_3_3_uv)(V p, V u, V v, V* by_u, V* by_v) {
+    return FN(three_uv_)(FN(place_3_)(p), FN(place_3_)(u), FN(place_3_)(v), 3, by_u, by_v);
+}
+V FN(noise_3_4_uv)(V p, F t, V u, F tu, V v, F tv, V* by_u, V* by_v) {
+    return FN(three_uv_)(FN(place_4_)(p, t), FN(place_4_)(u, tu), FN(place_4_)(v, tv), 4, by_u,
+                         by_v);
+}
 
 /* --- cells: 0, or the jump into the cell that a + d lies in
  * ------------------------------------------------------- */

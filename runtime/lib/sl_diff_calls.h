@@ -32,6 +32,15 @@ V FN(noise_3_1_d)(F x, F dx) OUT(noise_3_1_d);
 V FN(noise_3_2_d)(F x, F y, F dx, F dy) OUT(noise_3_2_d);
 V FN(noise_3_3_d)(V p, V dp) OUT(noise_3_3_d);
 V FN(noise_3_4_d)(V p, F t, V dp, F dt) OUT(noise_3_4_d);
+/* value, and the changes by two steps */
+F FN(noise_f_1_uv)(F x, F xu, F xv, F* by_u, F* by_v) OUT(noise_f_1_uv);
+F FN(noise_f_2_uv)(F x, F y, F xu, F yu, F xv, F yv, F* by_u, F* by_v) OUT(noise_f_2_uv);
+F FN(noise_f_3_uv)(V p, V u, V v, F* by_u, F* by_v) OUT(noise_f_3_uv);
+F FN(noise_f_4_uv)(V p, F t, V u, F tu, V v, F tv, F* by_u, F* by_v) OUT(noise_f_4_uv);
+V FN(noise_3_1_uv)(F x, F xu, F xv, V* by_u, V* by_v) OUT(noise_3_1_uv);
+V FN(noise_3_2_uv)(F x, F y, F xu, F yu, F xv, F yv, V* by_u, V* by_v) OUT(noise_3_2_uv);
+V FN(noise_3_3_uv)(V p, V u, V v, V* by_u, V* by_v) OUT(noise_3_3_uv);
+V FN(noise_3_4_uv)(V p, F t, V u, F tu, V v, F tv, V* by_u, V* by_v) OUT(noise_3_4_uv);
 F FN(cellnoise_f_1_d)(F x, F dx) OUT(cellnoise_f_1_d);
 F FN(cellnoise_f_2_d)(F x, F y, F dx, F dy) OUT(cellnoise_f_2_d);
 F FN(cellnoise_f_3_d)(V p, V dp) OUT(cellnoise_f_3_d);

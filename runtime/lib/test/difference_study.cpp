@@ -3,7 +3,7 @@
 // ... 1e-1, by differences of float values, by propagated differences (what slc emits), and by
 // float dual numbers, against the same difference in 80-bit floats; truncation against the analytic
 // derivative apart. Out: JSON lines; without arguments a summary, with --all one line per
-// expression, position and step (docs/area_operators.md, testsuite/plot_differences.py).
+// expression, position and step (docs/derivatives.md, testsuite/plot_differences.py).
 #define SL_LANES 4
 #include "runtime/lib/test/reference.h"
 #include "sl_shader.h"

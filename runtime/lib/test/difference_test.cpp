@@ -461,6 +461,30 @@ TEST(Differences, Colours) {
     check(colours());
 }
 
+// Value and both changes from one call: the bits of three calls.
+TEST(Differences, NoiseValueAndBothChanges) {
+    constexpr std::size_t n = 200;
+    for (int dims = 1; dims <= 4; dims++)
+        for (const char* kind : {"f", "3"})
+            for (const double step : {1e-6, 1e-3, 0.05, 2.0}) {
+                const std::string name = "noise_" + std::string(kind) + "_" + std::to_string(dims);
+                Planes p, u, v;
+                for (int k = 0; k < dims; k++) {
+                    p.push_back(scatter(-20, 20, n, k));
+                    u.push_back(scatter(-step, step, n, k + 10));
+                    v.push_back(scatter(-step, step, n, k + 20));
+                }
+                const auto join = [](Planes a, const Planes& b) {
+                    a.insert(a.end(), b.begin(), b.end());
+                    return a;
+                };
+                Planes want = run_all(name, p, n);
+                want = join(want, run_all(name + "_d", join(p, u), n));
+                want = join(want, run_all(name + "_d", join(p, v), n));
+                EXPECT_EQ(run_all(name + "_uv", join(join(p, u), v), n), want) << name << step;
+            }
+}
+
 // Positions far from the origin: the steps are representable, their sums with the position are not.
 TEST(Differences, TinyStepsFarOut) {
     constexpr std::size_t n = 200;
@@ -600,6 +624,35 @@ TEST_F(DifferencesInABatch, NormalsByAConstantAndAMovingMatrix) {
 }
 
 // --- what holds for all
+
+// Where functions are not defined they have a value all the same, and so have their differences.
+TEST(Differences, UndefinedArguments) {
+    const auto one = [](const char* name, std::initializer_list<double> args) {
+        Planes in;
+        for (const double a : args)
+            in.push_back({static_cast<float>(a)});
+        const Planes out = run_all(name, in, 1);
+        return out.empty() ? -1.0 : static_cast<double>(out[0][0]);
+    };
+    EXPECT_EQ(one("acos", {1.0000001}), 0);
+    EXPECT_EQ(one("acos_d", {1.0000001, 0.1}), 0);
+    EXPECT_NEAR(one("acos_d", {1.5, -1.0}), std::acos(0.5), 1e-6);
+    EXPECT_EQ(one("sqrt_d", {-1, 0.5}), 0);
+    EXPECT_EQ(one("sqrt_d", {-1, 2}), 1);
+    EXPECT_EQ(one("inversesqrt_d", {-1, 2}), 1);
+    EXPECT_EQ(one("pow_d", {0, 0, 0, 0}), 0);
+    EXPECT_EQ(one("pow_d", {0, 0, 0.5, 0}), 0); // x^0 is 1 everywhere
+    EXPECT_EQ(one("pow_d", {0, 0, 0, 1}), -1);  // 0^0 = 1, 0^1 = 0
+    EXPECT_EQ(one("pow_d", {-1, 0.5, 0.25, 0}), 0);
+    EXPECT_EQ(one("mod_d", {5, 0, 1, 0}), 0);
+    EXPECT_EQ(one("mod_d", {5, 0, 0, 2}), 1);
+    EXPECT_EQ(one("atan2_d", {0, 0, 1, 0}), static_cast<float>(1.57079632679));
+    EXPECT_EQ(one("normalize_d", {0, 0, 0, 3, 0, 0}), 1);
+    EXPECT_EQ(one("normalize_d", {3, 0, 0, -3, 0, 0}), -1);
+    EXPECT_EQ(one("length_d", {0, 0, 0, 0, 0, 0}), 0);
+    EXPECT_LT(one("log_d", {1, -2}), -80); // log of what is not positive is finite
+    EXPECT_EQ(one("log_d", {-1, 0.5}), 0);
+}
 
 // A row that promises a difference body has one, and a case that calls it.
 TEST(Differences, EveryRowThatPromisesOneHasOne) {

@@ -71,12 +71,22 @@ double ns_per_point(const Width& width, const char* name) {
 }
 
 void measure_speed() {
-    for (const char* name :
-         {"sin",       "tan",       "atan2",          "exp",           "log",
-          "pow",       "erf",       "sqrt",           "mod",           "smoothstep",
-          "normalize", "refract",   "fresnel",        "transform_m",   "inverse_m",
-          "to_hsv",    "from_hsv",  "spline_default", "cellnoise_f_3", "noise_f_1",
-          "noise_f_2", "noise_f_3", "noise_f_4",      "noise_3_3",     "pnoise_f_3"}) {
+    for (const char* name : {"sin",           "tan",
+                             "atan2",         "exp",
+                             "log",           "pow",
+                             "erf",           "sqrt",
+                             "mod",           "smoothstep",
+                             "normalize",     "refract",
+                             "fresnel",       "transform_m",
+                             "inverse_m",     "to_hsv",
+                             "from_hsv",      "spline_default",
+                             "cellnoise_f_3", "noise_f_1",
+                             "noise_f_2",     "noise_f_3",
+                             "noise_f_4",     "noise_3_3",
+                             "pnoise_f_3",    "sin_d",
+                             "pow_d",         "smoothstep_d",
+                             "mod_d",         "length_d",
+                             "normalize_d",   "spline_default_d"}) {
         std::string note;
         double last = 0;
         for (const Width& width : widths()) {
@@ -112,6 +122,31 @@ void measure_octaves() {
     char note[80];
     std::snprintf(note, sizeof note, "same bits: %s", result == by_hand ? "yes" : "NO");
     print("8-octave noise, library / intrinsics", lanes / hand, "ratio", 1.3, note);
+}
+
+// What differences cost beside the value alone.
+void measure_differences() {
+    if (!__builtin_cpu_supports("avx2"))
+        return;
+    const auto x = scatter(-20, 20, num_points, 0), y = scatter(-20, 20, num_points, 1),
+               z = scatter(-20, 20, num_points, 2);
+    std::vector<float> result(num_points);
+    const int n = static_cast<int>(num_points);
+    const double alone =
+        best_ns([&] { noise_octaves_8(x.data(), y.data(), z.data(), result.data(), n); });
+    for (const float step : {1e-5f, 0.1f}) {
+        const auto ratio = [&](auto function) {
+            return best_ns(
+                       [&] { function(x.data(), y.data(), z.data(), result.data(), n, step); }) /
+                   alone;
+        };
+        char note[120];
+        std::snprintf(note, sizeof note, "a call each %.3g; three values, which cancel, %.3g",
+                      ratio(noise_differences_apart), ratio(noise_differences_by_values));
+        print("8-octave noise with both differences / without, step " +
+                  std::string(step > 0.01f ? "0.1" : "1e-5"),
+              ratio(noise_differences_together), "ratio", 0, note);
+    }
 }
 
 // --- accuracy
@@ -187,6 +222,7 @@ void measure_accuracy() {
 
 int main() {
     measure_octaves();
+    measure_differences();
     measure_speed();
     measure_accuracy();
     return 0;

@@ -238,6 +238,48 @@ TEST(Fill, AuxiliaryDifferences) {
     RecordProperty("worst_dN", std::to_string(worst_N * 1e9) + "e-9");
 }
 
+// Differences of primitive variables against two values, where these differ enough to be
+// subtracted.
+TEST(Fill, DifferencesOfPrimitiveVariables) {
+    const std::vector<float> corners{1, 0, 2, 3, 1, 0, 0, 4, 1, 2, 2, 5};
+    SceneBuilder b;
+    rib::Primitive p = SceneBuilder::quadric(QuadricKind::Sphere, {1, -1, 1, 360});
+    auto& list = p.params.params;
+    list.push_back(param("where", StorageClass::Varying, ParamType::Point, corners));
+    list.push_back(param("way", StorageClass::Varying, ParamType::Vector, corners));
+    list.push_back(param("up", StorageClass::Varying, ParamType::Normal, corners));
+    list.push_back(param("tint", StorageClass::Varying, ParamType::Color, corners));
+    list.push_back(
+        param("pair", StorageClass::Varying, ParamType::Float, {1, 2, 3, 5, 8, 13, 21, 34}, 2));
+    list.push_back(param("four", StorageClass::Varying, ParamType::HPoint,
+                         {1, 0, 2, 1, 3, 1, 0, 2, 0, 4, 1, 1.5f, 2, 2, 5, 4}));
+    list.push_back(param("same", StorageClass::Constant, ParamType::Color, {1, 2, 3}));
+    b.add(p, Mat4::translate({0, 0, 5}) * Mat4::rotate(30, {1, 1, 0}) * Mat4::scale({1, 2, 3}));
+    QuietDiag d;
+    const auto world = b.world(d.diag);
+    Hit hit, by_u, by_v;
+    hit.shape = 0;
+    hit.u = 0.25f, hit.v = 0.5f;
+    by_u = by_v = hit;
+    by_u.u += 0.125f, by_v.v += 0.25f;
+    const float du[8] = {0.125f}, dv[8] = {0.25f};
+    for (const char* name : {"where", "way", "up", "tint", "pair", "four", "same"}) {
+        float here[3 * 8] = {}, there[2][3 * 8] = {}, change[2][3 * 8] = {};
+        world->fill_primitive_variable(std::span(&hit, 1), name, 8, here);
+        world->fill_primitive_variable(std::span(&by_u, 1), name, 8, there[0]);
+        world->fill_primitive_variable(std::span(&by_v, 1), name, 8, there[1]);
+        world->fill_primitive_differences(std::span(&hit, 1), name,
+                                          {du, dv, 8, change[0], change[1]});
+        for (std::size_t which = 0; which < 2; ++which) {
+            for (std::size_t plane = 0; plane < 3; ++plane) { // values up to 34, rounded once
+                EXPECT_NEAR(change[which][8 * plane], there[which][8 * plane] - here[8 * plane],
+                            4e-6)
+                    << name << " " << which << " " << plane;
+            }
+        }
+    }
+}
+
 TEST(Fill, OnlyWhatIsAsked) {
     SceneBuilder b;
     b.add(SceneBuilder::quadric(QuadricKind::Sphere, {1, -1, 1, 360}), Mat4::translate({0, 0, 5}));

@@ -121,10 +121,12 @@ void Emitter::refresh_planes(std::uint64_t reads, const Block& b) {
     }
 }
 
-// Output parameters as they stand, for shaders that ask for them meanwhile.
+// Output parameters as they stand, for shaders that ask for them meanwhile. Those that nothing has
+// been assigned to yet hold the value of the instance.
 void Emitter::store_outputs(const Block& b) {
     for (const Param& p : program_.params) {
-        if (var(p.var).is_output && flow_.place(p.var).is_written && mode_ == Mode::Shade) {
+        if (var(p.var).is_output && flow_.place(p.var).is_written && declared_.count(p.var) > 0 &&
+            mode_ == Mode::Shade) {
             store_param(p.var, mask(b));
         }
     }

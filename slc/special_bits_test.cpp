@@ -96,6 +96,10 @@ void append(Bits& bits, const float* plane, std::size_t n) {
     }
 }
 
+template <class T> T nothing() {
+    return T(); // also for void
+}
+
 // The oracle's world has no maps: here they are formulas of the place. What else it does not answer
 // finds nothing.
 sl_services bit_services() {
@@ -112,7 +116,7 @@ sl_services bit_services() {
     };
 #define SL_SERVICE(name, result, arguments, note)                                                  \
     if (s.name == nullptr) {                                                                       \
-        s.name = [] arguments -> result { return result(); };                                      \
+        s.name = [] arguments -> result { return nothing<result>(); };                             \
     }
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-parameter"

@@ -147,7 +147,9 @@ double render_seconds(Setting& s, const FrameContext& frame, const ShadingClasse
         BucketRenderer renderer(frame, s.camera, s.sampler, classes, nullptr,
                                 visibility_options(s.scene.options));
         for (std::size_t b = 0; b < picture->num_buckets(); ++b) {
-            renderer.render(b, *picture);
+            if (!renderer.render(b, *picture)) {
+                return; // interrupted
+            }
         }
     });
 }

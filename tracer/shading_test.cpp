@@ -111,8 +111,7 @@ protected:
                 renderer = std::make_unique<BucketRenderer>(
                     frame, camera, sampler, classes, nullptr, visibility_options(scene.options));
             }
-            renderer->render(bucket, *film);
-            return true;
+            return renderer->render(bucket, *film);
         });
         for (const auto& renderer : renderers) {
             if (renderer) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // rule: Area operators see what a function of a DSO gives at the neighbouring points.
-// later: differences at the auxiliary points
 // spec: docs/shadeops.md
 // scene: plate 8
 // run: render -shadeops {build}/runtime/base/test {scene}

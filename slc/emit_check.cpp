@@ -51,17 +51,26 @@ bool Emitter::is_checkable(VarId v) const {
            var(v).array_length == 0 && !is_truth(v);
 }
 
-void Emitter::check_value(VarId v, const Stmt& s, const Block& b) {
+// Lanes in which a divisor is 0, asked before the quotient may overwrite it; "" where that is no
+// question.
+std::string Emitter::zero_divisors(const Stmt& s) {
+    if (!checked_ || s.op != Op::Div || var(s.args[1]).type == Type::Matrix) {
+        return "";
+    }
+    const Expr divisor = fit(use(s.args[1]), form(s.args[1]), true);
+    const std::string name = fresh("zero");
+    out_.line("const " + std::string(dialect_.varying_truth) + " " + name + " = sl_some_zero_" +
+              std::string(form_suffix(divisor.form)) + "(" + divisor.text + ");");
+    return name;
+}
+
+void Emitter::check_value(VarId v, const Stmt& s, const Block& b, const std::string& zeros) {
     if (!checked_ || !is_checkable(v)) {
         return;
     }
     const std::string value = fit(name_of(v), form(v), true).text;
-    if (s.op == Op::Div && var(s.args[1]).type != Type::Matrix) {
-        const Expr divisor = fit(use(s.args[1]), form(s.args[1]), true);
-        emit_check(form(v), value,
-                   "(" + mask(b) + " & sl_some_zero_" + std::string(form_suffix(divisor.form)) +
-                       "(" + divisor.text + "))",
-                   s.loc,
+    if (!zeros.empty()) {
+        emit_check(form(v), value, "(" + mask(b) + " & " + zeros + ")", s.loc,
                    "division by zero" + (var(v).kind == VarKind::Temp
                                              ? std::string()
                                              : " in what goes to " + var(v).name));

@@ -165,7 +165,8 @@ private:
     [[nodiscard]] bool is_checkable(VarId v) const;
     void emit_check(Form form, const std::string& value, const std::string& lanes, const Loc& loc,
                     const std::string& what);
-    void check_value(VarId v, const Stmt& s, const Block& b);
+    [[nodiscard]] std::string zero_divisors(const Stmt& s);
+    void check_value(VarId v, const Stmt& s, const Block& b, const std::string& zeros = "");
     void check_inputs();
 
     // --- statements and control (emit_control.cpp)

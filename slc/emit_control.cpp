@@ -120,6 +120,7 @@ void Emitter::statement(const Stmt& s, const Block& b) {
         copy_array(s, b);
         return;
     }
+    const std::string zeros = zero_divisors(s);
     Expr value = value_of(s, b);
     if (may_defer(s, b)) {
         defer(s.dst, std::move(value));
@@ -127,7 +128,7 @@ void Emitter::statement(const Stmt& s, const Block& b) {
     }
     note_place(s.loc);
     assign(s.dst, value, b);
-    check_value(s.dst, s, b);
+    check_value(s.dst, s, b, zeros);
 }
 
 void Emitter::store_element(const Stmt& s, const Block& b) {

@@ -2,6 +2,7 @@
 // Shading, lights, visibility and imagers against closed forms, on sheets and hand-written shaders
 // (test_world.h). Float results are compared to 2e-6 relative: a dozen float roundings.
 #include "runtime/base/parallel.h"
+#include "tracer/bad_values.h"
 #include "tracer/bucket.h"
 #include "tracer/filter.h"
 #include "tracer/imager.h"
@@ -113,10 +114,13 @@ protected:
             }
             return renderer->render(bucket, *film);
         });
+        BadValues bad;
         for (const auto& renderer : renderers) {
             if (renderer) {
                 counters += renderer->thread().counters;
+                bad.add(renderer->thread().bad);
             }
+            report_bad_values(frame, bad, {});
         }
         if (const ShaderEntry* imager = shaders.get(scene.options.imager)) {
             run_imager(frame, *imager, film->image(), num_threads, counters);

@@ -524,7 +524,9 @@ void Interpreter::illuminance(const Stmt& s, Mask& mask) {
         for (std::size_t p = 0; p < mask.size(); ++p) {
             skipped[p] = static_cast<char>(running[p] != 0 && in_body[p] == 0);
         }
+        ++light_loops_;
         part(s, 0, light, in_body);
+        --light_loops_;
         for (std::size_t p = 0; p < mask.size(); ++p) {
             running[p] = static_cast<char>(skipped[p] != 0 || in_body[p] != 0 ||
                                            frames_.back().continued[p] != 0);

@@ -161,6 +161,7 @@ private:
     std::vector<char> bound_;                  // parameters that were set
     std::vector<std::uint32_t> random_counts_; // by point
     std::vector<std::uint32_t> random_uniform_counts_; // calls with a uniform target, by point
+    int light_loops_ = 0; // illuminance statements around the current one
     Mask lit_;
     std::vector<Frame> frames_;
     std::size_t steps_ = 0;

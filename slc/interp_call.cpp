@@ -261,6 +261,8 @@ bool Interpreter::state(const Stmt& s, int point, std::vector<Value>& args, Valu
         result = Value(host_.raylevel());
     } else if (row.body == "shadername" || row.body == "shadername_of") {
         result = Value(host_.shader_name(args.empty() ? "" : args[0].text()));
+    } else if (row.body == "message_lightsource" && light_loops_ == 0) {
+        result = Value(0.0); // no light is asked
     } else if (row.has(PropInout) &&
                row.has(PropContext)) { // messages: (name, X) or (name, key, X)
         const std::size_t name = args.size() - 2;

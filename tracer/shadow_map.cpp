@@ -13,6 +13,9 @@ namespace {
 constexpr int most_samples = 1024;
 // Where the slope of the receiver is not known it counts as lying within this many texel widths.
 constexpr double unknown_slope_texels = 2;
+// The plane goes through points of the receiver: between them a curved one rises above it. One
+// whose radius is at least this many texels does not shade itself.
+constexpr double least_radius_texels = 16;
 // Depths are floats, and so are the points that are compared.
 constexpr double rounding = 4e-6;
 // A receiver seen more edge-on than this tells no useful plane.
@@ -132,8 +135,13 @@ ShadowMap::Footprint ShadowMap::footprint(const View& view, const Spot& at, cons
     f.bias[1] = options.bias[1];
     if (!options.has_bias) {
         const double texel = texel_ * (perspective_ ? at.z : 1);
+        const double side = std::max(std::hypot(du[0], du[1]), std::hypot(dv[0], dv[1]));
+        const double rise_texels =
+            side * side / (8 * least_radius_texels); // of an arc over its chord
         f.tolerance =
-            (f.has_plane ? 0 : unknown_slope_texels * texel) + rounding * (at.z + texel_ * width_);
+            (f.has_plane ? std::min(rise_texels, unknown_slope_texels) : unknown_slope_texels) *
+                texel +
+            rounding * (at.z + texel_ * width_);
         // Samples lie anywhere within their texels.
         f.key_tolerance = 0.5 * (std::abs(f.slope[0]) + std::abs(f.slope[1]));
     }

@@ -91,7 +91,7 @@ struct BoundValue;
 // An object for one set of parameter values, which can be made.
 struct SpecialShader {
     std::string key;            // of the cache
-    double work_left = 1;       // of the general shader's work per point, estimated
+    double gain = 0;            // share of the general shader's time it saves, expected
     double compile_seconds = 0; // estimated
     std::function<std::optional<std::string>(base::Diag&, const Cancelled&)> compile;
 };

@@ -47,6 +47,7 @@ struct BuiltObject {
 struct SpecialOrder {
     Specialised special;
     std::uint64_t kept_needed = 0; // variables lights look for in the batch of who asks them
+    double gain = 0;               // share of the general shader's time it saves, expected
     std::string key;               // identifies what build_special would make
 };
 // nullopt with the reason in `error`: broken IR, or no compiler.

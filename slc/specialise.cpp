@@ -2,7 +2,6 @@
 #include "slc/specialise.h"
 
 #include "slc/compiler.h"
-#include "slc/cost.h"
 #include "slc/ir_text.h"
 #include "slc/ir_util.h"
 
@@ -33,6 +32,16 @@ void note_written(const Block& b, std::vector<bool>& written) {
             note_written(inner, written);
         }
     }
+}
+
+std::size_t count_statements(const Block& b) {
+    std::size_t n = b.size();
+    for (const Stmt& s : b) {
+        for (const Block& inner : s.bodies) {
+            n += count_statements(inner);
+        }
+    }
+    return n;
 }
 
 bool fits(const Var& param, const ConstantParam& value) {
@@ -149,12 +158,11 @@ std::optional<Specialised> specialise(std::string_view ir, std::span<const Const
         return std::nullopt;
     }
     Specialised result;
-    result.work_before = cost_of(*program);
     Specialiser(*program).run(constants);
     CompileOptions options;
     options.exact = true;
     run_passes(*program, options);
-    result.work_after = cost_of(*program);
+    result.num_statements = count_statements(program->body);
     result.program = std::move(*program);
     return result;
 }

@@ -24,7 +24,7 @@ struct ConstantParam {
 
 struct Specialised {
     Program program;
-    double work_before = 0, work_after = 0; // cost_of() the general program and this one
+    std::size_t num_statements = 0; // bodies included: what the C compiler's time goes by
 };
 
 // nullopt with the reason in `error`: broken text. Values that fit no parameter, output parameters

@@ -9,7 +9,6 @@
 #include "runtime/base/module.h"
 #include "runtime/base/parallel.h"
 #include "runtime/base/search_path.h"
-#include "slc/cost.h"
 #include "slc/driver.h"
 #include "tracer/display.h"
 #include "tracer/live_display.h"
@@ -168,11 +167,10 @@ std::optional<rt::SpecialShader> special_shader(const sl_object& general,
         return std::nullopt;
     }
     const auto order = std::make_shared<const slc::SpecialOrder>(std::move(*made));
-    const slc::Specialised& special = order->special;
     rt::SpecialShader shader;
     shader.key = order->key;
-    shader.work_left = special.work_before > 0 ? special.work_after / special.work_before : 1;
-    shader.compile_seconds = compile_seconds(slc::num_statements(special.program));
+    shader.gain = order->gain;
+    shader.compile_seconds = compile_seconds(order->special.num_statements);
     shader.compile = [order, options](base::Diag& diag, const rt::Cancelled& cancelled) {
         slc::ObjectOptions stoppable = options;
         stoppable.front.cancelled = cancelled;

@@ -5,7 +5,6 @@
 #include "tracer/shader_set.h"
 
 #include <algorithm>
-#include <cstdio>
 
 namespace trace {
 
@@ -159,7 +158,7 @@ void Specialiser::ask(Candidate& candidate, double work_s) {
 // While the compiler works the others go on without it.
 bool Specialiser::pays(const rt::SpecialShader& special, double work_s) const {
     const double left_s = work_s - settings_.num_threads * special.compile_seconds;
-    return left_s * (1 - special.work_left) > wanted_return * special.compile_seconds;
+    return left_s * special.gain > wanted_return * special.compile_seconds;
 }
 
 // Without work_s: whatever it costs.
@@ -185,23 +184,19 @@ void Specialiser::make(Candidate& candidate, std::optional<double> work_s) {
         });
     }
     if (object != nullptr && rt::have_same_block(*object, general.shader())) {
-        publish(candidate, *object, *special);
+        publish(candidate, *object);
     }
     candidate.state = State::Done;
 }
 
-void Specialiser::publish(Candidate& candidate, const rt::ShaderObject& object,
-                          const rt::SpecialShader& special) {
+void Specialiser::publish(Candidate& candidate, const rt::ShaderObject& object) {
     candidate.instance = std::make_unique<rt::ShaderInstance>(object, *candidate.entry->instance);
     candidate.entry->special = candidate.instance.get();
     ++num_special_;
     if (settings_.is_verbose && !settings_.for_profile) {
-        char text[160];
-        std::snprintf(text, sizeof text,
-                      "now runs specialised on its parameters: %.0f %% of the work, by estimate",
-                      100 * special.work_left);
         diag_.report(base::Severity::Info, base::Code::None, candidate.entry->pos,
-                     "shader \"" + candidate.entry->name + "\" " + text);
+                     "shader \"" + candidate.entry->name +
+                         "\" now runs specialised on its parameters");
     }
 }
 

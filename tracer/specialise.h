@@ -60,8 +60,7 @@ private:
     void look(double share_done);
     void ask(Candidate& candidate, double work_s);
     void make(Candidate& candidate, std::optional<double> work_s);
-    void publish(Candidate& candidate, const rt::ShaderObject& object,
-                 const rt::SpecialShader& special);
+    void publish(Candidate& candidate, const rt::ShaderObject& object);
     [[nodiscard]] bool pays(const rt::SpecialShader& special, double work_s) const;
 
     const Settings settings_;

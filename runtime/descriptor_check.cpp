@@ -163,7 +163,8 @@ private:
     }
 
     void variant(const sl_variant& v) {
-        require((v.lanes == 4 || v.lanes == 8) && (v.isa == SL_ISA_any || v.isa == SL_ISA_avx2),
+        require((v.lanes == 1 || v.lanes == 4 || v.lanes == 8) &&
+                    (v.isa == SL_ISA_any || v.isa == SL_ISA_avx2),
                 "lanes");
         require(v.frame_size == 0 ||
                     (v.frame_size >= sizeof(sl_frame) && v.frame_size <= max_frame_size),

@@ -136,6 +136,13 @@ BuiltObject build_object(const Program& program, const ObjectOptions& options, b
 
 namespace {
 
+// With the bits of the general code.
+CompileOptions exactly(const CompileOptions& options) {
+    CompileOptions exact = options;
+    exact.exact = true;
+    return exact;
+}
+
 // Branches on parameters cost next to nothing where they are not taken, so constants alone save
 // little: 1 to 7 % of seven shaders (benchmark "corpus", docs/design/slc-speed.md, spd-003). What
 // no longer has to be filled in, and evaluation at the auxiliary points, count by themselves.
@@ -163,7 +170,8 @@ std::optional<SpecialOrder> special_order(const sl_object& general,
     }
     SpecialOrder order;
     order.special = std::move(*special);
-    order.gain = expected_gain(general, analyse(order.special.program));
+    order.gain =
+        expected_gain(general, analyse(resolved(order.special.program, exactly(options.front))));
     order.kept_needed = general.needed & (1ULL << SL_VAR_P | 1ULL << SL_VAR_N);
     base::Sha256 hash;
     order.key = hash.add_field("specialised")
@@ -178,9 +186,7 @@ std::optional<SpecialOrder> special_order(const sl_object& general,
 // run, these stay what they are in the general shader.
 BuiltObject build_special(const SpecialOrder& order, const ObjectOptions& options,
                           base::Diag& diag) {
-    CompileOptions exact = options.front; // the bits of the general code
-    exact.exact = true;
-    const Program ready = resolved(order.special.program, exact);
+    const Program ready = resolved(order.special.program, exactly(options.front));
     Facts facts = analyse(ready);
     if ((facts.facts & (SL_FACT_lights | SL_FACT_ambient)) != 0) {
         facts.needed |= order.kept_needed;

@@ -126,6 +126,22 @@ sl_services bit_services() {
     return s;
 }
 
+// To the auxiliary points: small, of either sign, no two alike.
+void fill_differences(rt::ShadeBatch& batch) {
+    for (int id = 0; id < SL_VAR_COUNT; ++id) {
+        const auto v = static_cast<sl_variable>(id);
+        const auto row = static_cast<std::size_t>(id);
+        for (int k = 0; batch.aux_u(v) != nullptr && k < num_components(variable_rows()[row].type);
+             ++k) {
+            for (std::uint32_t i = 0; i < num_points; ++i) {
+                const float x = OracleWorld::input(row, k, static_cast<int>(i));
+                batch.aux_u(v, k)[i] = 0.01F * (x - 0.5F);
+                batch.aux_v(v, k)[i] = 0.02F * (0.25F - x);
+            }
+        }
+    }
+}
+
 // What a run leaves in the variables and parameters that `object` assigns.
 Bits run(const rt::ShaderInstance& instance, const sl_object& object, OracleWorld& world) {
     rt::ShadeBatch batch;
@@ -143,6 +159,7 @@ Bits run(const rt::ShaderInstance& instance, const sl_object& object, OracleWorl
             }
         }
     }
+    fill_differences(batch);
     for (std::uint32_t i = 0; i < num_points; ++i) {
         batch.seeds()[i] = i;
     }
@@ -168,13 +185,22 @@ Bits run(const rt::ShaderInstance& instance, const sl_object& object, OracleWorl
     return bits;
 }
 
+Program resolved(Program program, bool exact) {
+    CompileOptions options;
+    options.exact = exact;
+    resolve_area_operators(program, options);
+    return program;
+}
+
 void expect_same_bits(const Program& program, const std::string& what, unsigned seed) {
     EmitRunner runner;
     OracleWorld world(runner.strings);
     const sl_services services = bit_services();
     const BuildWay way{native_lanes(), 1};
-    const rt::ShaderObject* general = runner.build(program, analyse(program), way);
-    ASSERT_NE(general, nullptr) << what;
+    const Program resolved_general = resolved(program, false);
+    const rt::ShaderObject* general =
+        runner.build(resolved_general, analyse(resolved_general), way);
+    ASSERT_NE(general, nullptr) << what << "\n" << runner.last_c;
     const std::string ir = print_ir(program);
     Draw draw(seed);
     const std::vector<rt::BoundValue> values = draw_values(general->object(), draw);
@@ -183,8 +209,9 @@ void expect_same_bits(const Program& program, const std::string& what, unsigned 
     std::string error;
     const auto special = specialise(ir, constants_of(instance, draw), error);
     ASSERT_TRUE(special) << what << ": " << error;
-    Facts facts = analyse(special->program);
-    const rt::ShaderObject* object = runner.build(special->program, facts, way);
+    const Program resolved_special = resolved(special->program, true);
+    const Facts facts = analyse(resolved_special);
+    const rt::ShaderObject* object = runner.build(resolved_special, facts, way);
     ASSERT_NE(object, nullptr) << what << "\n" << runner.last_c;
     ASSERT_TRUE(rt::have_same_block(*object, *general)) << what;
     EXPECT_EQ(facts.needed & ~general->object().needed, 0U) << what;

@@ -106,7 +106,11 @@ class Compiled {
 public:
     // With `general`: made from it, with its parameters.
     Compiled(const Program& program, int lanes, const Compiled* general = nullptr) {
-        shader_ = runner_.build(program, slc::analyse(program), {lanes, 2});
+        slc::CompileOptions options;
+        options.exact = general != nullptr;
+        Program ready = program;
+        slc::resolve_area_operators(ready, options);
+        shader_ = runner_.build(ready, slc::analyse(ready), {lanes, 2});
         if (!shader_) {
             return;
         }
@@ -151,7 +155,9 @@ private:
 };
 
 // Seconds per point in the interpreter.
-double interpreted(const Program& program) {
+double interpreted(const Program& as_written) {
+    Program program = as_written;
+    slc::resolve_area_operators(program, {});
     slc::InterpHost host;
     return best_seconds(2,
                         [&] {

@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0
- * Functions that need what the engine does not offer yet (derivatives, rays), one text per
+ * Functions of places without neighbours, and those that need rays, which come later; one text per
  * world: each reports once per shader and returns its documented fallback
  * (reference/sl.md 4.2, 4.6).
  */
 
-/* --- derivatives: 0; a step stays hard; the normal is N on the side of Ng
+/* --- derivatives: the compiler replaces these by arithmetic on differences
+ * (docs/area_operators.md); what still calls a body stands where no point has neighbours, as
+ * defaults of parameters do. 0; a step stays hard; the normal is N on the side of Ng
  * ------------------------------------------ */
 
-#define NO_DERIVATIVES(name)                                                                       \
-    report(call, name "(): derivatives are not computed in this version; the result is 0")
+#define NO_DERIVATIVES(name) report(call, name "(): nothing varies here; the result is 0")
 
 F FN(Du_f)(CALL, F a) {
     NO_DERIVATIVES("Du");
@@ -47,8 +48,7 @@ F FN(area_strategy)(CALL, V p, sl_string strategy) {
 }
 V FN(calculatenormal)(CALL, V p) {
     (void)p;
-    report(call,
-           "calculatenormal(): derivatives are not computed in this version; the result is N");
+    report(call, "calculatenormal(): nothing varies here; the result is N");
     const V n = FN(normal_at_)(PASS, SL_VAR_N), ng = FN(normal_at_)(PASS, SL_VAR_Ng);
     return FN(select_3)(LT(FN(dot_3)(n, ng), K(0)), FN(neg_3)(n), n);
 }
@@ -70,7 +70,7 @@ V FN(calculatenormal_d)(CALL, V p_u, V p_v) {
 }
 F FN(filterstep)(CALL, F edge, F x, const sl_value* values, int n) {
     (void)values, (void)n;
-    report(call, "filterstep(): derivatives are not computed in this version; the step is hard");
+    report(call, "filterstep(): nothing varies here; the step is hard");
     return FN(step)(edge, x);
 }
 

@@ -317,22 +317,22 @@ SL_INLINE void FN(noise_steps_)(const FN(place4_) * p, const FN(place4_) * u, co
 }
 
 SL_INLINE FN(place4_) FN(place_1_)(F x) {
-    FN(place4_) p;
+    FN(place4_) p = {0}; /* axes beyond the dimensions are copied too */
     p.a[0] = x;
     return p;
 }
 SL_INLINE FN(place4_) FN(place_2_)(F x, F y) {
-    FN(place4_) p;
+    FN(place4_) p = {0}; /* axes beyond the dimensions are copied too */
     p.a[0] = x, p.a[1] = y;
     return p;
 }
 SL_INLINE FN(place4_) FN(place_3_)(V a) {
-    FN(place4_) p;
+    FN(place4_) p = {0}; /* axes beyond the dimensions are copied too */
     p.a[0] = a.x, p.a[1] = a.y, p.a[2] = a.z;
     return p;
 }
 SL_INLINE FN(place4_) FN(place_4_)(V a, F t) {
-    FN(place4_) p;
+    FN(place4_) p = {0}; /* axes beyond the dimensions are copied too */
     p.a[0] = a.x, p.a[1] = a.y, p.a[2] = a.z, p.a[3] = t;
     return p;
 }

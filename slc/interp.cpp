@@ -54,6 +54,7 @@ Interpreter::Interpreter(const Program& program, InterpHost& host, int num_point
     random_counts_.resize(n, 0);
     random_uniform_counts_.resize(n, 0);
     lit_.resize(n, 0);
+    wild_.resize(n, 0);
 }
 
 Value& Interpreter::at(VarId id, int point) {
@@ -211,6 +212,9 @@ void Interpreter::round(const Stmt& s, const Mask& mask) {
             continue;
         }
         for (double& x : at(s.dst, p).x) {
+            if (!(std::abs(x) < 1e6)) {
+                wild_[static_cast<std::size_t>(p)] = 1;
+            }
             if (x == static_cast<float>(x) || std::isnan(x)) {
                 continue; // exact, or rounded before
             }

@@ -89,6 +89,11 @@ public:
     // by a few places more: the spread over some seeds shows what float arithmetic makes of a
     // program ([Vignes93] CESTAC).
     void round_at_random(std::uint32_t seed) { rounding_ = seed | 1; }
+    // While rounding, something at that point was no number, or beyond what float arithmetic treats
+    // alike everywhere (arguments of sin() and the like): what follows from it is not defined.
+    [[nodiscard]] bool left_numbers(int point) const {
+        return wild_[static_cast<std::size_t>(point)] != 0;
+    }
 
     [[nodiscard]] const Value& global(int variable, int point) const;
     [[nodiscard]] const Value& aux(int variable, int aux, int point) const;
@@ -149,6 +154,7 @@ private:
         return program_.vars[static_cast<std::size_t>(id)];
     }
 
+    Mask wild_;                  // left_numbers()
     std::uint32_t rounding_ = 0; // state of its random numbers; 0: double precision
     std::size_t max_steps_ = 20'000'000;
 

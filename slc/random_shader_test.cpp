@@ -15,6 +15,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <gtest/gtest.h>
+#include <limits>
 
 namespace slc {
 namespace {
@@ -113,7 +114,9 @@ public:
         for (int i = 0; i < num_points; ++i) {
             for (std::size_t p = num_inputs(); p < program().params.size(); ++p) {
                 for (const double x : interpreter.param(param(program(), p).name, i).x) {
-                    results.push_back(static_cast<float>(x));
+                    const bool is_defined = !interpreter.left_numbers(i);
+                    results.push_back(is_defined ? static_cast<float>(x)
+                                                 : std::numeric_limits<float>::quiet_NaN());
                 }
             }
         }

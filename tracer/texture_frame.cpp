@@ -323,13 +323,15 @@ void TextureFrame::ask(const Map& map, perigee_texture_query& query, const Repor
     }
 }
 
-void TextureFrame::texture(const Map& map, const sl_map_query& query, std::uint32_t mask,
-                           const Report& report, float* result) const {
+// One lookup per lane at the places that `put` finds.
+template <class Put>
+void TextureFrame::look_up(const Map& map, const sl_map_query& query, std::uint32_t mask,
+                           const Report& report, float* result, Put put) const {
     const perigee_texture_info& info = map.picture.info;
     const Channels c = channels_of(query, info.num_channels, info.alpha);
     Places places;
     if (c.present > 0) {
-        place_texture(query, info.wrap, mask, places);
+        put(places);
         perigee_texture_query q{};
         q.mask = mask;
         q.channel = query.channel;
@@ -340,6 +342,12 @@ void TextureFrame::texture(const Map& map, const sl_map_query& query, std::uint3
         ask(map, q, report);
     }
     put_channels(query, mask, c, places.values, result);
+}
+
+void TextureFrame::texture(const Map& map, const sl_map_query& query, std::uint32_t mask,
+                           const Report& report, float* result) const {
+    look_up(map, query, mask, report, result,
+            [&](Places& places) { place_texture(query, map.picture.info.wrap, mask, places); });
 }
 
 void TextureFrame::bump(const Map& map, const sl_map_query& query, std::uint32_t mask,
@@ -402,21 +410,8 @@ void place_latlong(const sl_map_query& q, std::uint32_t mask, Places& out) {
 
 void TextureFrame::latlong(const Map& map, const sl_map_query& query, std::uint32_t mask,
                            const Report& report, float* result) const {
-    const perigee_texture_info& info = map.picture.info;
-    const Channels c = channels_of(query, info.num_channels, info.alpha);
-    Places places;
-    if (c.present > 0) {
-        place_latlong(query, mask, places);
-        perigee_texture_query q{};
-        q.mask = mask;
-        q.channel = query.channel;
-        q.num_channels = c.present;
-        q.filter = filter_of(query.filter);
-        std::copy_n(info.wrap, 2, q.wrap);
-        places.attach(q);
-        ask(map, q, report);
-    }
-    put_channels(query, mask, c, places.values, result);
+    look_up(map, query, mask, report, result,
+            [&](Places& places) { place_latlong(query, mask, places); });
 }
 
 void TextureFrame::cube(const Map& map, const sl_map_query& query, std::uint32_t mask,

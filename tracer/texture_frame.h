@@ -75,6 +75,9 @@ private:
     void lookup_one(const Map& map, const sl_map_query& query, std::uint32_t mask,
                     const ShadowBias& bias, const Report& report, float* result) const;
     void fall_back(const sl_map_query& query, std::uint32_t mask, float* result) const;
+    template <class Put>
+    void look_up(const Map& map, const sl_map_query& query, std::uint32_t mask,
+                 const Report& report, float* result, Put put) const;
     void texture(const Map& map, const sl_map_query& query, std::uint32_t mask,
                  const Report& report, float* result) const;
     void bump(const Map& map, const sl_map_query& query, std::uint32_t mask, const Report& report,

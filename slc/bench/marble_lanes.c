@@ -2,6 +2,7 @@
  * marble.sl as a programmer would write it with vector extensions: no masks, constants outside the
  * loop, the spline's polynomial coefficients in tables that are looked up within registers. Noise
  * is compiled along with it, pow comes from the library. */
+#include "by_hand.h"
 #include "marble.h"
 #include "noise.c" /* the library's, so that the compiler sees all of it */
 
@@ -34,23 +35,6 @@ static slf at(const cubic* p, sli span, slf t) {
     const slf c2 = __builtin_ia32_permvarsf256(p->c[2], span);
     const slf c3 = __builtin_ia32_permvarsf256(p->c[3], span);
     return c0 + t * (c1 + t * (c2 + t * c3));
-}
-
-static slv load3(const float* p, uint32_t stride, uint32_t i) {
-    slv r;
-    __builtin_memcpy(&r.x, p + i, sizeof(slf));
-    __builtin_memcpy(&r.y, p + stride + i, sizeof(slf));
-    __builtin_memcpy(&r.z, p + 2 * stride + i, sizeof(slf));
-    return r;
-}
-
-static slf dot(slv a, slv b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-static slv unit(slv a) {
-    const slf d = dot(a, a);
-    return slv_scale_3(a, 1.0f / slv_root_f(slv_select_f(d == 0.0f, slv_spread_f(1), d)));
 }
 
 static slf veins(slv q) {

@@ -2,26 +2,9 @@
  * What a programmer would write with vector extensions for eight points at once: no masks, because
  * nothing diverges, reciprocals and constants hoisted. Noise is compiled along with it, pow comes
  * from the library. */
+#include "by_hand.h"
 #include "noise.c" /* the library's, so that the compiler sees all of it */
 #include "noise_phong.h"
-
-static slv load3(const float* p, uint32_t stride, uint32_t i) {
-    slv r;
-    __builtin_memcpy(&r.x, p + i, sizeof(slf));
-    __builtin_memcpy(&r.y, p + stride + i, sizeof(slf));
-    __builtin_memcpy(&r.z, p + 2 * stride + i, sizeof(slf));
-    return r;
-}
-
-static slf dot(slv a, slv b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-static slv unit(slv a) {
-    const slf d = dot(a, a);
-    const slf k = 1.0f / slv_root_f(slv_select_f(d == 0.0f, slv_spread_f(1), d));
-    return slv_scale_3(a, k);
-}
 
 void noise_phong_lanes(const noise_phong_in* in, float* Ci, float* Oi) {
     const float l = 1.0f / 3.74165738677f; /* |(1, 2, -3)| */

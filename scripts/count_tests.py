@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Summarises a Meson test run.
 
-In: meson-logs/testlog.json. Out: what failed and why, what was skipped and why, and as the last line
+In: a JSON log of meson test. Out: what failed and why, what was skipped and why, and as the last line
 "N passed, N failed[, N skipped]"; exit status 1 if any test failed or none ran.
 """
 

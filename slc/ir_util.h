@@ -6,6 +6,8 @@
 #include "slc/ir.h"
 
 #include <string_view>
+#include <unordered_set>
+#include <vector>
 
 namespace slc {
 
@@ -59,6 +61,21 @@ struct OpInfo {
     const BuiltinRow& row = builtin_of(s);
     return row.has(PropLights) || (row.has(PropMessage) && row.has(PropState));
 }
+
+// Gives every variable the statements name, bodies included, the number to[id].
+void renumber(Block& b, const std::vector<VarId>& to);
+
+// What statements assign, bodies included, and L, Cl and Ol where light statements set them.
+class WrittenVars {
+public:
+    explicit WrittenVars(const Program& program);
+    void add(const Stmt& s, std::unordered_set<VarId>& out) const;
+    // L, Cl and Ol before the body of illuminate and solar.
+    void add_lights(std::unordered_set<VarId>& out) const;
+
+private:
+    VarId lights_[3] = {no_var, no_var, no_var};
+};
 
 // Calls read(id) for every variable whose value the statement itself uses, bodies not included.
 // Partly changed arrays and output arguments that may keep their value count as read.

@@ -206,18 +206,9 @@ void Propagation::assignment(const Stmt& s) {
     }
     const VarId result = m.dst;
     out_->push_back(std::move(m));
-    Pair d = {no_var, no_var};
     for (int axis = 0; axis < 2; ++axis) {
-        if (!analysis_.differs(s.dst, axis)) {
-            continue;
-        }
-        d[static_cast<std::size_t>(axis)] = rule(s, a, result, axis);
-        const VarId to = difference(s.dst, axis);
-        const VarId from = d[static_cast<std::size_t>(axis)];
-        if (from == no_var) {
-            emit(Op::Copy, to, {zero(to)});
-        } else {
-            assign(to, from);
+        if (analysis_.differs(s.dst, axis)) {
+            set_difference(s.dst, axis, rule(s, a, result, axis));
         }
     }
     if (aliased) {

@@ -17,7 +17,7 @@ namespace {
 
 class CopyPropagation {
 public:
-    explicit CopyPropagation(Program& program) : program_(program) {}
+    explicit CopyPropagation(Program& program) : program_(program), written_(program) {}
     bool run();
 
 private:
@@ -30,26 +30,17 @@ private:
     void replace_reads(Stmt& s, const Copies& copies, const Vars& kept);
     void replace(VarId& id, const Copies& copies, const Vars& kept);
     void note(const Stmt& s, Copies& copies) const;
-    void written(const Stmt& s, Vars& out) const;
-    void written(const Block& b, Vars& out) const;
     static void forget(const Vars& written, Copies& copies);
     [[nodiscard]] const Var& var(VarId id) const {
         return program_.vars[static_cast<std::size_t>(id)];
     }
 
     Program& program_;
-    VarId lights_[3] = {no_var, no_var, no_var}; // L, Cl, Ol
+    WrittenVars written_;
     bool changed_ = false;
 };
 
 bool CopyPropagation::run() {
-    for (std::size_t i = 0; i < program_.vars.size(); ++i) {
-        const Var& v = program_.vars[i];
-        const bool is_light = is_global(v) && v.index >= SL_VAR_L && v.index <= SL_VAR_Ol;
-        if (is_light) {
-            lights_[v.index - SL_VAR_L] = static_cast<VarId>(i);
-        }
-    }
     for (Param& p : program_.params) {
         Copies copies;
         block(p.init, copies);
@@ -73,7 +64,7 @@ void CopyPropagation::statement(Stmt& s, Copies& copies) {
     } else {
         replace_reads(s, copies, {});
         Vars gone;
-        written(s, gone);
+        written_.add(s, gone);
         forget(gone, copies);
         note(s, copies);
     }
@@ -82,7 +73,7 @@ void CopyPropagation::statement(Stmt& s, Copies& copies) {
 // Bodies that run at most once or per light; each starts with what holds before.
 void CopyPropagation::nested(Stmt& s, Copies& copies) {
     Vars inside;
-    written(s, inside);
+    written_.add(s, inside);
     replace_reads(s, copies, inside);
     if (is_loop(s.op)) {
         forget(inside, copies);
@@ -92,9 +83,7 @@ void CopyPropagation::nested(Stmt& s, Copies& copies) {
         Copies local = before;
         if (s.op == Op::Illuminate || s.op == Op::Solar) { // L is set before the body
             Vars light;
-            Stmt direction;
-            direction.op = s.op;
-            written(direction, light);
+            written_.add_lights(light);
             forget(light, local);
         }
         block(b, local);
@@ -104,7 +93,7 @@ void CopyPropagation::nested(Stmt& s, Copies& copies) {
 
 void CopyPropagation::loop(Stmt& s, Copies& copies) {
     Vars inside;
-    written(s, inside);
+    written_.add(s, inside);
     forget(inside, copies);
     Copies test = copies;
     block(s.bodies[0], test);
@@ -150,26 +139,6 @@ void CopyPropagation::note(const Stmt& s, Copies& copies) const {
     const Var& from = var(s.args[0]);
     if (to.array_length == 0 && from.array_length == 0 && same_class(to.type, from.type)) {
         copies[s.dst] = s.args[0];
-    }
-}
-
-void CopyPropagation::written(const Stmt& s, Vars& out) const {
-    for_each_write(s, [&](VarId id, bool) { out.insert(id); });
-    if (s.op == Op::Illuminance || s.op == Op::Illuminate || s.op == Op::Solar) {
-        for (const VarId id : lights_) {
-            if (id != no_var) {
-                out.insert(id);
-            }
-        }
-    }
-    for (const Block& b : s.bodies) {
-        written(b, out);
-    }
-}
-
-void CopyPropagation::written(const Block& b, Vars& out) const {
-    for (const Stmt& s : b) {
-        written(s, out);
     }
 }
 

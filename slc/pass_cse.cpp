@@ -43,7 +43,7 @@ struct Known {
 
 class ValueNumbering {
 public:
-    explicit ValueNumbering(Program& program);
+    explicit ValueNumbering(Program& program) : program_(program), written_(program) {}
     bool run();
 
 private:
@@ -60,7 +60,6 @@ private:
     void value(Stmt& s);
     [[nodiscard]] bool is_value(const Stmt& s) const;
     [[nodiscard]] Key key_of(const Stmt& s) const;
-    void written(const Stmt& s, Vars& out) const;
     void set_number(VarId id, Number n);
     void renew(const Vars& vars);
     [[nodiscard]] Mark mark() const { return {old_numbers_.size(), old_known_.size()}; }
@@ -72,22 +71,13 @@ private:
 
     Program& program_;
     Number last_ = none;
-    VarId lights_[3] = {no_var, no_var, no_var}; // L, Cl, Ol
-    std::vector<Number> numbers_;                // by variable
+    WrittenVars written_;
+    std::vector<Number> numbers_; // by variable
     std::unordered_map<Key, Known, KeyHash> known_;
     std::vector<std::pair<VarId, Number>> old_numbers_;
     std::vector<std::pair<Known*, Known>> old_known_;
     bool changed_ = false;
 };
-
-ValueNumbering::ValueNumbering(Program& program) : program_(program) {
-    for (std::size_t i = 0; i < program_.vars.size(); ++i) {
-        const Var& v = program_.vars[i];
-        if (v.kind == VarKind::Global && v.index >= SL_VAR_L && v.index <= SL_VAR_Ol) {
-            lights_[v.index - SL_VAR_L] = static_cast<VarId>(i);
-        }
-    }
-}
 
 bool ValueNumbering::run() {
     for (std::size_t i = 0; i < program_.vars.size(); ++i) {
@@ -142,7 +132,7 @@ void ValueNumbering::statement(Stmt& s) {
         value(s);
     } else {
         Vars gone;
-        written(s, gone);
+        written_.add(s, gone);
         renew(gone);
     }
 }
@@ -197,15 +187,13 @@ void ValueNumbering::value(Stmt& s) {
 // Bodies that run at most once or per light.
 void ValueNumbering::nested(Stmt& s) {
     Vars inside;
-    written(s, inside);
+    written_.add(s, inside);
     if (is_loop(s.op)) {
         renew(inside);
     }
     Vars light; // L is set before the body
     if (s.op == Op::Illuminate || s.op == Op::Solar) {
-        Stmt direction;
-        direction.op = s.op;
-        written(direction, light);
+        written_.add_lights(light);
     }
     for (Block& b : s.bodies) {
         body(b, light);
@@ -215,9 +203,9 @@ void ValueNumbering::nested(Stmt& s) {
 
 void ValueNumbering::loop(Stmt& s) {
     Vars inside, in_body;
-    written(s, inside);
+    written_.add(s, inside);
     for (const Stmt& t : s.bodies[1]) {
-        written(t, in_body);
+        written_.add(t, in_body);
     }
     renew(inside);
     const Mark before = mark();
@@ -226,22 +214,6 @@ void ValueNumbering::loop(Stmt& s) {
     body(s.bodies[2], in_body);
     take_back(before);
     renew(inside);
-}
-
-void ValueNumbering::written(const Stmt& s, Vars& out) const {
-    for_each_write(s, [&](VarId id, bool) { out.insert(id); });
-    if (s.op == Op::Illuminance || s.op == Op::Illuminate || s.op == Op::Solar) {
-        for (const VarId id : lights_) {
-            if (id != no_var) {
-                out.insert(id);
-            }
-        }
-    }
-    for (const Block& b : s.bodies) {
-        for (const Stmt& inner : b) {
-            written(inner, out);
-        }
-    }
 }
 
 } // namespace

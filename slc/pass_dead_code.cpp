@@ -60,25 +60,6 @@ void mark(const Block& b, std::vector<bool>& used) {
     }
 }
 
-void renumber(Block& b, const std::vector<VarId>& to) {
-    for (Stmt& s : b) {
-        const auto move = [&](VarId& id) {
-            id = id == no_var ? no_var : to[static_cast<std::size_t>(id)];
-        };
-        for (VarId& id : s.args) {
-            move(id);
-        }
-        move(s.dst);
-        move(s.category);
-        for (auto& option : s.options) {
-            move(option.second);
-        }
-        for (Block& inner : s.bodies) {
-            renumber(inner, to);
-        }
-    }
-}
-
 } // namespace
 
 bool pass_dead_code(Program& program) {

@@ -181,16 +181,20 @@ void Propagation::assign(VarId to, VarId from) {
 
 void Propagation::set_differences(VarId source, const Pair& d) {
     for (int axis = 0; axis < 2; ++axis) {
-        const VarId to = difference(source, axis);
-        const VarId from = d[static_cast<std::size_t>(axis)];
-        if (to == no_var) {
-            continue;
-        }
-        if (from == no_var) {
-            emit(Op::Copy, to, {zero(to)});
-        } else {
-            assign(to, from);
-        }
+        set_difference(source, axis, d[static_cast<std::size_t>(axis)]);
+    }
+}
+
+// Variables without a difference along the axis are left; value no_var: the points agree.
+void Propagation::set_difference(VarId source, int axis, VarId value) {
+    const VarId to = difference(source, axis);
+    if (to == no_var) {
+        return;
+    }
+    if (value == no_var) {
+        emit(Op::Copy, to, {zero(to)});
+    } else {
+        assign(to, value);
     }
 }
 

@@ -79,6 +79,7 @@ private:
     }
     VarId copy_of(VarId id);
     void assign(VarId to, VarId from); // from: a temporary just computed is computed in place
+    void set_difference(VarId source, int axis, VarId value);
     void set_differences(VarId source, const Pair& d);
     VarId moved(const Dual& x, int axis); // x + d
     VarId minus(VarId a, VarId b);

@@ -87,17 +87,9 @@ void Propagation::function(const Stmt& s) {
     }
     const VarId result = m.dst;
     out_->push_back(std::move(m));
-    Pair d = {no_var, no_var};
     for (int axis = 0; axis < 2; ++axis) {
         if (analysis_.differs(s.dst, axis)) {
-            d[at(axis)] = call_rule(like, var(s.dst).type, a, result, axis);
-            const VarId to = difference(s.dst, axis);
-            const VarId from = d[at(axis)];
-            if (from == no_var) {
-                emit(Op::Copy, to, {zero(to)});
-            } else {
-                assign(to, from);
-            }
+            set_difference(s.dst, axis, call_rule(like, var(s.dst).type, a, result, axis));
         }
     }
     if (aliased) {

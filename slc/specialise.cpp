@@ -75,7 +75,7 @@ public:
                 to[static_cast<std::size_t>(p.var)] = add_constant(p.var, *it);
             }
         }
-        replace(program_.body, to);
+        renumber(program_.body, to);
         copy_changed();
         for (Param& p : program_.params) {
             p.init.clear(); // the block comes from the instance of the general shader
@@ -124,23 +124,6 @@ private:
         }
         program_.body.insert(program_.body.begin(), std::make_move_iterator(head.begin()),
                              std::make_move_iterator(head.end()));
-    }
-
-    static void replace(Block& b, const std::vector<VarId>& to) {
-        const auto moved = [&](VarId& id) {
-            id = id == no_var ? no_var : to[static_cast<std::size_t>(id)];
-        };
-        for (Stmt& s : b) {
-            std::for_each(s.args.begin(), s.args.end(), moved);
-            moved(s.dst);
-            moved(s.category);
-            for (auto& option : s.options) {
-                moved(option.second);
-            }
-            for (Block& inner : s.bodies) {
-                replace(inner, to);
-            }
-        }
     }
 
     Program& program_;

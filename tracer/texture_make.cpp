@@ -74,6 +74,13 @@ void finish(base::OutputFile& file, bool good, const std::string& error, MakeOut
     }
 }
 
+void write_own_map(const std::string& path, const MapFile& map, MakeOutcome& outcome) {
+    base::OutputFile file(path);
+    std::string error;
+    const bool good = write_map_file(map, file, error);
+    finish(file, good, error, outcome);
+}
+
 void make_picture(const MakeRequest& request, MakeOutcome& outcome) {
     std::string error;
     const perigee_textures* module = texture_module(error);
@@ -164,10 +171,7 @@ void make_cube(const MakeRequest& request, MakeOutcome& outcome) {
     }
     MapFile map{std::string(cube_format), {}};
     map.images.push_back(assemble_cube(faces, request.fov_deg));
-    base::OutputFile file(request.target);
-    std::string error;
-    const bool good = write_map_file(map, file, error);
-    finish(file, good, error, outcome);
+    write_own_map(request.target, map, outcome);
 }
 
 // Depth files, each with the matrices of its camera.
@@ -196,10 +200,7 @@ void make_shadow(const MakeRequest& request, MakeOutcome& outcome) {
             map.images.push_back(std::move(image));
         }
     }
-    base::OutputFile file(request.target);
-    std::string error;
-    const bool good = write_map_file(map, file, error);
-    finish(file, good, error, outcome);
+    write_own_map(request.target, map, outcome);
 }
 
 // Point clouds with the same channels become one.

@@ -415,7 +415,7 @@ V FN(pnoise_3_4_d)(V p, F t, V pp, F pt, V dp, F dt, V dpp, F dpt) {
 }
 #undef PERIODIC
 
-/* --- value and both changes at once: what calls of noise become when the compiler meets all three
+/* --- value and both changes at once; emitted code does not call these yet
  * ---------------------------- */
 
 SL_INLINE F FN(one_uv_)(FN(place4_) p, FN(place4_) u, FN(place4_) v, int dims, F* by_u, F* by_v) {

@@ -21,10 +21,11 @@ namespace ref = lanes_test::reference;
 
 // --- numbers: each with the functions that expressions use
 
+template <class T> struct Plain { T x; };
 // A float, by the built-in functions of shaders.
-struct Value {
-    float x;
-};
+using Value = Plain<float>;
+// The real numbers.
+using Wide = Plain<Real>;
 // A float and its difference to the auxiliary point.
 struct Moving {
     float x, d;
@@ -32,16 +33,16 @@ struct Moving {
 // A number and its derivative along the step.
 template <class T> struct Dual { T x, d; };
 
-Value operator+(Value a, Value b) {
+template <class T> Plain<T> operator+(Plain<T> a, Plain<T> b) {
     return {a.x + b.x};
 }
-Value operator-(Value a, Value b) {
+template <class T> Plain<T> operator-(Plain<T> a, Plain<T> b) {
     return {a.x - b.x};
 }
-Value operator*(Value a, Value b) {
+template <class T> Plain<T> operator*(Plain<T> a, Plain<T> b) {
     return {a.x * b.x};
 }
-Value operator/(Value a, Value b) {
+template <class T> Plain<T> operator/(Plain<T> a, Plain<T> b) {
     return {a.x / b.x};
 }
 Value sin(Value a) {
@@ -194,22 +195,6 @@ Dual<Real> noise(Dual<Real> x, Dual<Real> y, Dual<Real> z) {
     return {ref::noise<Real>(3, 0, p), h > 0 ? rise / (2 * h) : 0};
 }
 
-// The real numbers.
-struct Wide {
-    Real x;
-};
-Wide operator+(Wide a, Wide b) {
-    return {a.x + b.x};
-}
-Wide operator-(Wide a, Wide b) {
-    return {a.x - b.x};
-}
-Wide operator*(Wide a, Wide b) {
-    return {a.x * b.x};
-}
-Wide operator/(Wide a, Wide b) {
-    return {a.x / b.x};
-}
 Wide sin(Wide a) {
     return {std::sin(a.x)};
 }

@@ -269,11 +269,11 @@ std::uint32_t ShadeBatch::run(const ShadeContext& context) {
     return num_suspended;
 }
 
-sl_request* ShadeBatch::request(std::uint32_t packet) {
+sl_ray_query* ShadeBatch::request(std::uint32_t packet) {
     if (packet >= finished_.size() || finished_[packet] || frame_stride_ == 0) {
         return nullptr;
     }
-    return &reinterpret_cast<sl_frame*>(frames_ + packet * frame_stride_)->request;
+    return &reinterpret_cast<sl_frame*>(frames_ + packet * frame_stride_)->rays;
 }
 
 } // namespace rt

@@ -92,7 +92,7 @@ public:
     // What the shader is handed; services and engine are those of the last run().
     [[nodiscard]] const sl_batch& raw() const { return batch_; }
     // The pending request of a packet, or null if it is finished.
-    [[nodiscard]] sl_request* request(std::uint32_t packet);
+    [[nodiscard]] sl_ray_query* request(std::uint32_t packet);
 
 private:
     struct Layout;

@@ -37,7 +37,7 @@ sl_status suspend_once(const sl_batch* batch, std::uint32_t first, std::uint32_t
                        sl_frame* frame) {
     if (frame->state == 0) {
         frame->state = 1;
-        frame->request.builtin = static_cast<int>(first);
+        frame->rays.sample = static_cast<int>(first);
         return SL_SUSPENDED;
     }
     return shade(batch, first, count, frame);
@@ -217,7 +217,7 @@ TEST_F(Batches, SuspendedPacketsAreCalledAgain) {
     batch.begin(instance, 10);
     EXPECT_EQ(batch.run({&services, nullptr}), 3U);
     ASSERT_NE(batch.request(2), nullptr);
-    EXPECT_EQ(batch.request(2)->builtin, 8);
+    EXPECT_EQ(batch.request(2)->sample, 8);
     EXPECT_EQ(batch.run({&services, nullptr}), 0U);
     EXPECT_EQ(batch.request(2), nullptr);
 }

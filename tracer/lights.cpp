@@ -548,6 +548,20 @@ std::uint32_t answer_light_message(Execution& execution, const sl_light_query& q
                           *run.info().shader, run.batch(), 0);
 }
 
+// The middle of the cone stands for all of it.
+void choose_solar_direction(const Execution& execution, const SolarQuery& query) {
+    if (query.axis != nullptr) {
+        std::copy_n(query.axis, 3 * execution.lanes(), query.L);
+        return;
+    }
+    for (std::uint32_t k = 0; k < 3 && execution.batch->has(SL_VAR_Ns); ++k) {
+        const float* Ns = execution.batch->plane(SL_VAR_Ns, static_cast<int>(k));
+        for (std::uint32_t lane = 0; lane < execution.lanes(); ++lane) {
+            query.L[k * execution.lanes() + lane] = -Ns[query.first + lane];
+        }
+    }
+}
+
 void run_ambient(Execution& execution, std::uint32_t first, std::uint32_t mask, const float* P,
                  float* C) {
     const std::uint32_t lanes = execution.lanes();

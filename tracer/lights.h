@@ -114,6 +114,14 @@ std::uint32_t answer_light_message(Execution& execution, const sl_light_query& q
                                    sl_string name, std::int32_t type, std::int32_t array_length,
                                    float* value);
 
+// The service `solar_direction`, planes of the execution's lanes; axis null: all directions.
+struct SolarQuery {
+    std::uint32_t first = 0, mask = 0;
+    const float *axis = nullptr, *angle = nullptr;
+    float* L = nullptr;
+};
+void choose_solar_direction(const Execution& execution, const SolarQuery& query);
+
 // The service `ambient`: sum of Cl over the ambient lights, 3 planes.
 void run_ambient(Execution& execution, std::uint32_t first, std::uint32_t mask, const float* P,
                  float* C);

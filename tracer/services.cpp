@@ -8,6 +8,7 @@
 #include "tracer/messages.h"
 #include "tracer/pattern_cache.h"
 #include "tracer/pixel_trace.h"
+#include "tracer/ray_queries.h"
 #include "tracer/shadeop_call.h"
 #include "tracer/shader_profile.h"
 #include "tracer/shader_set.h"
@@ -362,6 +363,15 @@ int32_t raylevel(void* engine) {
 
 int32_t ray_kind(void* engine) {
     return of(engine).ray_kind;
+}
+
+void rays(void* engine, sl_ray_query* query) {
+    answer_rays(of(engine), *query);
+}
+
+void solar_direction(void* engine, uint32_t first, uint32_t mask, const float* axis,
+                     const float* angle, float* L) {
+    choose_solar_direction(of(engine), {first, mask, axis, angle, L});
 }
 
 sl_profile_row* profile(void* engine) {

@@ -80,7 +80,8 @@ enum {
     SL_MESSAGE_opposite,
     SL_MESSAGE_attribute,
     SL_MESSAGE_option,
-    SL_MESSAGE_rendererinfo
+    SL_MESSAGE_rendererinfo,
+    SL_MESSAGE_ray /* rayinfo(): of the ray that came here */
 };
 
 /* A typed reference to a value of a running shader, for printf, options, outputs of any type and
@@ -122,6 +123,9 @@ typedef struct sl_light_result {
     int32_t
         more; /* non-zero: another sample of this light follows (area lights): ask again with the
                  same index; the engine scales Cl so that the sum over samples is the light */
+    int32_t next; /* when no sample follows: the next light worth asking; not above the query's
+                     index: the one after it. Lights between are left out; those asked make up for
+                     them in Cl */
 } sl_light_result;
 
 /* What a map lookup asks for, and the slots of its options. */
@@ -190,24 +194,75 @@ typedef struct sl_place {
     int32_t line; /* 0: before and after the shader's own statements */
 } sl_place;
 
+/* What functions that trace rays ask for. */
+enum {
+    SL_RAYS_trace,        /* colour from along D */
+    SL_RAYS_fulltrace,    /* also what was hit, and the deepest ray that missed */
+    SL_RAYS_hittest,      /* what was hit; nothing is shaded */
+    SL_RAYS_transmission, /* share of light that passes from P to D, a point */
+    SL_RAYS_shadow,       /* the same from P to P + D, or along D to infinity in lights that shine
+                             from there: shadow("raytrace", P) */
+    SL_RAYS_occlusion,    /* D: normal; C[0]: share of the cone about it that is covered */
+    SL_RAYS_indirect,     /* D: normal; mean colour from the cone about it */
+    SL_RAYS_gather        /* ray number `sample` of `samples` in the cone of `angle` about D */
+};
+enum {
+#define SL_RAY_NUMBER(name, default, note) SL_RAY_OPTION_##name,
+#include "sl_ray_options.def"
+    SL_RAY_OPTIONS
+};
+enum {
+#define SL_RAY_TEXT(name, note) SL_RAY_TEXT_##name,
+#include "sl_ray_options.def"
+    SL_RAY_TEXTS
+};
+enum { SL_RAY_CHANNELS_MAX = 16 };
+
+/* A value at the hit that is asked for ("surface:Ci", "ray:length", "primitive:N"), or one sent
+ * there ("send:surface:Kd"): floats and triples; a matrix or string cannot be asked for. The rays'
+ * own outputs of occlusion() and indirectdiffuse() ("environmentdir", "occlusion") are channels,
+ * too. */
+typedef struct sl_ray_channel {
+    sl_string name;
+    int32_t type; /* SL_TYPE_float, or one of three components */
+    int32_t is_sent;
+    uint32_t set;                   /* lanes the engine has set */
+    float values[3 * SL_LANES_MAX]; /* planes of `lanes` */
+} sl_ray_channel;
+
+/* Rays of one packet: the question, then the answer. Where a shader may wait, it stands in its
+ * frame and the shader returns SL_SUSPENDED; elsewhere the service `rays` answers at once. Planes of
+ * `lanes`; points and directions are in current space, directions need not be unit. */
+typedef struct sl_ray_query {
+    int32_t kind; /* SL_RAYS_* */
+    uint32_t first, lanes, mask;
+    float P[3 * SL_LANES_MAX];
+    float D[3 * SL_LANES_MAX];
+    /* Differences of both at the auxiliary points, the rays' footprint; 0 where there are none. */
+    float P_u[3 * SL_LANES_MAX], P_v[3 * SL_LANES_MAX];
+    float D_u[3 * SL_LANES_MAX], D_v[3 * SL_LANES_MAX];
+    float angle[SL_LANES_MAX];
+    int32_t sample, samples; /* gather */
+    sl_string category;      /* gather */
+    uint32_t given;          /* bit (1 << SL_RAY_OPTION_*): was given, else holds its default */
+    float option[SL_RAY_OPTIONS][SL_LANES_MAX];
+    sl_string text[SL_RAY_TEXTS];
+    int32_t num_channels;
+    sl_ray_channel channel[SL_RAY_CHANNELS_MAX];
+
+    uint32_t hit;                  /* lanes whose ray met a surface */
+    float C[3 * SL_LANES_MAX];     /* colour, transmission; a number in the first plane */
+    float distance[SL_LANES_MAX];  /* in units of length; 1e30 where nothing was hit */
+    float Phit[3 * SL_LANES_MAX], Nhit[3 * SL_LANES_MAX];
+    float Pmiss[3 * SL_LANES_MAX], Rmiss[3 * SL_LANES_MAX];
+    float level_missed[SL_LANES_MAX]; /* level of the deepest ray that missed; 0: none did */
+} sl_ray_query;
+
 typedef struct sl_services {
 #define SL_SERVICE(name, result, arguments, note) result(*name) arguments;
 #include "sl_services.def"
 #undef SL_SERVICE
 } sl_services;
-
-/* A request only the engine can answer for many packets at once (trace and its relatives, filtered
- * texture). A shader that meets one stores it and its live values in its frame, returns
- * SL_SUSPENDED and is called again with the same frame when `result` is filled. Used from the
- * Shading Language and Light issues on. */
-typedef struct sl_request {
-    int32_t builtin; /* row in sl_builtins.def */
-    uint32_t mask;   /* lanes that ask */
-    int32_t num_arguments;
-    const void* argument[16]; /* planes, in the order of the row's arguments; strings: const
-                                 sl_string* per lane */
-    void* result[8];          /* planes to fill: the value first, then output arguments */
-} sl_request;
 
 typedef enum sl_status { SL_DONE = 0, SL_SUSPENDED = 1 } sl_status;
 
@@ -215,7 +270,7 @@ typedef enum sl_status { SL_DONE = 0, SL_SUSPENDED = 1 } sl_status;
 typedef struct sl_frame {
     int32_t state;
     int32_t reserved;
-    sl_request request;
+    sl_ray_query rays; /* what it waits for while it is suspended */
 } sl_frame;
 
 /* One batch. `params` follows sl_param.offset. Differences, not values, for the two auxiliary

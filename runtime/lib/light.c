@@ -47,7 +47,8 @@ int sl_lights_next(const sl_call* call, sl_light_loop* loop, sli* lit) {
         loop->at_index = loop->index;
         loop->at_sample = loop->sample;
         const uint32_t bits = call->services->light(call->engine, &query, &result);
-        loop->index += result.more ? 0 : 1;
+        if (!result.more)
+            loop->index = result.next > loop->index ? result.next : loop->index + 1;
         loop->sample = result.more ? loop->sample + 1 : 0;
         take_result(loop, &result);
         *lit = reached(loop, loop->live & sl_mask(bits));

@@ -76,6 +76,8 @@ public:
     // What map() answers for a channel and a lane; none: there are no maps.
     std::function<float(const sl_map_query&, int, std::uint32_t)> map;
     std::vector<sl_map_query> queries; // those that were asked
+    std::vector<sl_ray_query> ray_queries;
+    std::function<void(sl_ray_query&)> trace;
 
     std::vector<std::string> printed;
     std::vector<std::string> reports;
@@ -292,6 +294,19 @@ private:
     static std::uint32_t texture3d_(void* engine, const sl_point_query* query) {
         report_(engine, 0, (std::string("no points ") + query->file).c_str());
         return 0;
+    }
+    // Without `trace` every ray misses: black, or nothing is in the way.
+    static void rays_(void* engine, sl_ray_query* query) {
+        TestEngine& e = of(engine);
+        e.ray_queries.push_back(*query);
+        if (e.trace) {
+            e.trace(*query);
+        }
+    }
+    static void solar_direction_(void* engine, std::uint32_t, std::uint32_t, const float* axis,
+                                 const float*, float* L) {
+        for (std::uint32_t k = 0; k < 3 * of(engine).lanes_ && axis != nullptr; ++k)
+            L[k] = axis[k];
     }
     static sl_profile_row* profile_(void*) {
         return nullptr;

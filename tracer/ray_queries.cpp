@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracer/ray_queries.h"
+
+#include "tracer/execution.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace trace {
+
+namespace {
+
+constexpr float very_far = 1e30f;
+
+// The ray of a lane goes on for ever.
+void miss(sl_ray_query& query, std::uint32_t lane, int ray_level) {
+    const bool passes = query.kind == SL_RAYS_transmission || query.kind == SL_RAYS_shadow;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+        const std::uint32_t at = k * query.lanes + lane;
+        query.C[at] = passes ? 1.0f : 0.0f;
+        query.Phit[at] = query.Nhit[at] = 0;
+        query.Pmiss[at] = query.P[at];
+        query.Rmiss[at] = query.D[at];
+    }
+    query.distance[lane] = very_far;
+    query.level_missed[lane] = static_cast<float>(ray_level + 1);
+}
+
+} // namespace
+
+void answer_rays(Execution& execution, sl_ray_query& query) {
+    query.hit = 0;
+    for (std::uint32_t rest = query.mask; rest != 0; rest &= rest - 1) {
+        miss(query, static_cast<std::uint32_t>(std::countr_zero(rest)), execution.ray_level);
+    }
+}
+
+} // namespace trace

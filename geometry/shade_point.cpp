@@ -326,9 +326,15 @@ private:
         }
     }
 
-    // The same eye sees both points; rays of an orthographic camera are parallel instead.
+    // The same eye sees both points; rays of an orthographic camera are parallel instead, and those
+    // of mirrors in between: their origins differ across the ray by what did not open on the way.
     [[nodiscard]] V3d incident_difference(const V3d& dP, std::size_t i) const {
         const V3d d = direction(i);
+        if (i < r_.incident.widening.size()) {
+            const double dd = dot(d, d);
+            const V3d along = dd > 0 ? d * (dot(d, dP) / dd) : V3d();
+            return along + (dP - along) * double(r_.incident.widening[i]);
+        }
         return !r_.perspective && d.x == 0 && d.y == 0 ? V3d(0, 0, dP.z) : dP;
     }
 

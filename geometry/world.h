@@ -53,6 +53,10 @@ struct Incident {
     // Distance on the surface, perpendicular to the ray, to the next shading sample; per hit. For
     // du and dv.
     std::span<const float> footprint;
+    // Share of that distance by which neighbouring rays have drawn apart since their origins: 1
+    // where they come from one point, 0 where they are parallel, other values behind mirrors. For
+    // differences of I; empty: rays of the camera.
+    std::span<const float> widening = {};
 };
 
 struct Stats {

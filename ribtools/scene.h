@@ -364,7 +364,8 @@ struct Scene {
     std::vector<Object> objects;
     std::vector<Instance> instances;
     std::map<std::string, TransformId>
-        coordinate_systems; // CoordinateSystem "name": world_from_named
+        coordinate_systems;          // CoordinateSystem "name": world_from_named
+    ShaderId camera_exterior = none; // Exterior in force where the world began: the camera is in it
 };
 
 } // namespace rib

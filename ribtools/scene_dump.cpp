@@ -277,6 +277,9 @@ std::string dump(const Scene& scene) {
     Dump d;
     options(d, scene.options);
     transform(d, "camera", scene.camera_from_world);
+    if (scene.camera_exterior != none) {
+        d.line("camera exterior " + id(scene.camera_exterior));
+    }
     if (!(scene.screen_from_camera_extra == base::Mat4())) {
         transform(d, "screen", Transform{{Transform::Key{0, scene.screen_from_camera_extra}}});
     }

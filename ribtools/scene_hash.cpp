@@ -265,10 +265,10 @@ void Hasher::add(const Options& options) {
 
 void Hasher::add(const Scene& scene) {
     const auto& [options, camera_from_world, screen_from_camera_extra, transforms, attributes,
-                 shaders, lights, solids, primitives, objects, instances, coordinate_systems] =
-        scene;
+                 shaders, lights, solids, primitives, objects, instances, coordinate_systems,
+                 camera_exterior] = scene;
     all(options, camera_from_world, screen_from_camera_extra, transforms, attributes, shaders,
-        lights, solids, primitives, objects, instances, coordinate_systems);
+        lights, solids, primitives, objects, instances, coordinate_systems, camera_exterior);
 }
 
 } // namespace

@@ -170,6 +170,7 @@ void State::do_WorldBegin(Request& request) {
               "the camera transformation has no inverse; an identity is used");
         scene_->camera_from_world = Transform();
     }
+    scene_->camera_exterior = attributes_.value.exterior;
     bring_into_world();
     transform_ = {Transform(), none};
 }

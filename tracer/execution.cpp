@@ -3,6 +3,8 @@
 
 #include "tracer/lights.h"
 #include "tracer/pattern_cache.h"
+#include "tracer/ray_levels.h"
+#include "tracer/shade_job.h"
 #include "tracer/shader_set.h"
 
 #include <algorithm>

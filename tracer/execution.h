@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a running shader stands in: the frame, the thread's scratch, the points being shaded. A
 // pointer to an Execution is the `engine` every service of runtime/abi/sl_services.def gets.
-// Executions live on the stack of the function that runs a batch; lights get one of their own that
-// refers to the one that asked.
+// Executions live with the batch they run (shade_job.h); lights get one of their own that refers to
+// the one that asked.
 #pragma once
 
 #include "geometry/world.h"
@@ -35,6 +35,8 @@ class LightRun;
 class PatternCache;
 struct LightList;
 class PixelTrace;
+class RayLevels;
+class ShadeJobs;
 class ShaderProfile;
 class TextureFrame;
 
@@ -73,30 +75,42 @@ struct SpaceCache {
     std::size_t size = 0;
 };
 
-// Scratch of one thread. Batches are nested by role, so that a volume sees the surface it follows.
+// Scratch of one thread.
 struct ThreadState {
     ThreadState();
     ~ThreadState();
 
     Counters counters;
-    rt::ShadeBatch displacement;
-    rt::ShadeBatch surface;
-    rt::ShadeBatch volume;
+    std::unique_ptr<ShadeJobs> jobs;               // what batches are shaded in
+    std::unique_ptr<RayLevels> levels;             // who shades what rays of shaders meet
     std::unique_ptr<PatternCache> patterns;        // of match()
     std::vector<ShadeopItem> shadeops;             // functions of DSOs that were called
     std::vector<std::unique_ptr<LightRun>> lights; // by light, made on first use
-    std::uint64_t batch_serial = 0;   // grows with every batch: stale light results are told by it
-    std::string printed;              // printf of the bucket in work
-    PixelTrace* trace = nullptr;      // --trace-pixel: told what happens
-    ShaderProfile* profile = nullptr; // --profile-shaders: this thread's rows
-    BadValues bad;                    // results that were no numbers
-    bool is_abandoned = false;        // a shader was interrupted: what is in work is worth nothing
+    std::uint64_t batch_serial = 0;                // grows with every run of a shader on a batch
+    std::string printed;                           // printf of the bucket in work
+    PixelTrace* trace = nullptr;                   // --trace-pixel: told what happens
+    ShaderProfile* profile = nullptr;              // --profile-shaders: this thread's rows
+    BadValues bad;                                 // results that were no numbers
+    bool is_abandoned = false; // a shader was interrupted: what is in work is worth nothing
 };
 
 // A shader that runs or has run on the points of a batch, and the batch that holds its values.
 struct StageRun {
     const ShaderEntry* shader = nullptr;
     rt::ShadeBatch* batch = nullptr;
+};
+
+// The rays that found the points of a batch, as shaders may ask and as the next rays need it; by
+// point, empty: unknown. Seeds: what random numbers of a point are made from, whoever needs them.
+struct RaySubject {
+    int level = 0;            // 0: camera
+    int kind = SL_RAY_camera; // SL_RAY_*
+    int diffuse_level = 0;    // diffuse rays among those before
+    std::span<const std::uint32_t> seeds;
+    std::span<const float> spread;          // growth of the footprint per unit of length
+    std::span<const std::uint32_t> media;   // media.h: what the ray came through
+    std::span<const sl_string> labels;      // null: none was given
+    std::span<const std::uint32_t> samples; // of the bucket, for --trace-pixel
 };
 
 // Points of one batch that came from rays. All belong to attribute states that shade alike; where a
@@ -110,6 +124,7 @@ struct BatchSubject {
     StageRun displacement{}, surface{}, atmosphere{};
     // Differences of P at the auxiliary points, planes of the batch's stride; null: not known.
     const float *P_u = nullptr, *P_v = nullptr;
+    RaySubject rays{};
 };
 
 class Execution {
@@ -127,6 +142,7 @@ public:
     const Execution* asked_by = nullptr; // a light's: the execution that lights its points,
     std::uint32_t asked_first = 0;       // the index there of its first point,
     std::uint32_t asked_mask = 0;        // and the lanes that were asked
+    std::uint64_t serial = 0;            // of this run: what lights found for others is told by it
     int ray_level = 0;
     int ray_kind = SL_RAY_camera;
     SpaceCache spaces;

@@ -8,53 +8,55 @@
 namespace trace {
 
 // What the shaders after the displacement need of the points.
-NeededVariables HitShader::needed_after(const Group& group) const {
-    const ShadingClass& c = classes_[group.shading_class];
-    NeededVariables needed{shown_variables(group.shading_class) | c.surface->object().needed,
+NeededVariables HitShader::needed_after(const ShadeJob& job) const {
+    const ShadingClass& c = class_of(job);
+    NeededVariables needed{shown_variables(job.shading_class) | c.surface->object().needed,
                            c.surface->object().needed_aux};
     needed.aux |= c.lights.needs_differences ? std::uint64_t{1} << SL_VAR_P : 0;
-    if (c.atmosphere != nullptr) {
-        needed.main |= c.atmosphere->object().needed;
+    if (job.volume_shader != nullptr) {
+        needed.main |= job.volume_shader->object().needed;
     }
     return needed;
 }
 
-bool HitShader::is_displaced(const Group& group, NeededVariables after) const {
-    const ShadingClass& c = classes_[group.shading_class];
+bool HitShader::is_displaced(const ShadeJob& job, NeededVariables after) const {
+    const ShadingClass& c = class_of(job);
     if (c.displacement == nullptr) {
         return false;
     }
     const bool is_shown =
         outputs_ != nullptr &&
-        std::ranges::any_of(outputs_->sources(group.shading_class), [](const ChannelSource& s) {
+        std::ranges::any_of(outputs_->sources(job.shading_class), [](const ChannelSource& s) {
             return s.from == ChannelSource::From::Displacement;
         });
     const bool matters = (changed_by(c.displacement->object()) & (after.main | after.aux)) != 0;
     return matters || is_shown || c.by_attributes; // displacement("x", v)
 }
 
-void HitShader::run_displacement(const ShadingClass& c, NeededVariables after,
-                                 BatchSubject& subject, std::span<const std::uint32_t> members) {
-    const auto count = static_cast<std::uint32_t>(members.size());
-    rt::ShadeBatch& batch = thread_.displacement;
-    batch.begin(c.displacement->current(), count);
-    displaced_.begin(batch, after);
+void HitShader::run_displacement(ShadeJob& job, NeededVariables after) {
+    const ShadingClass& c = class_of(job);
+    rt::ShadeBatch& batch = job.displacement;
+    batch.begin(c.displacement->current(), job.count());
+    job.displaced.begin(batch, after);
     Execution execution(frame_, *c.displacement);
-    execution.thread = &thread_;
-    execution.batch = &batch;
-    execution.subject = &subject;
-    subject.displacement = {c.displacement, &batch};
-    frame_.world->fill(subject_hits_, incident(count), displaced_.filled() & geometry_variables,
-                       batch.stride(), displaced_.points(), batch.aux_points_u(),
+    job.subject.displacement = {c.displacement, &batch};
+    frame_.world->fill(job.hits, job.incident(), job.displaced.filled() & geometry_variables,
+                       batch.stride(), job.displaced.points(), batch.aux_points_u(),
                        batch.aux_points_v());
-    fill_own_variables(batch, count);
-    fill_seeds(batch, members);
-    bind_overrides(c, Stage::Displacement, batch);
-    displaced_.keep_position();
-    run(batch, execution);
-    displaced_.finish();
-    ++thread_.batch_serial; // its lights are asked by another shader
-    thread_.counters.add(Counter::points_displacement, count);
+    fill_own_variables(batch);
+    fill_seeds(job, batch);
+    bind_overrides(job, Stage::Displacement, batch);
+    job.displaced.keep_position();
+    run(job, batch, execution);
+    job.displaced.finish();
+    thread_.counters.add(Counter::points_displacement, job.count());
+}
+
+void HitShader::displace(const ShadeJob& job, const sl_points& main, const sl_points* aux_u,
+                         const sl_points* aux_v) const {
+    if (job.is_displaced) {
+        job.displaced.apply(main, aux_u, aux_v, {job.incident(), camera_.perspective()});
+    }
 }
 
 } // namespace trace

@@ -29,42 +29,47 @@ Planes param_planes(rt::ShadeBatch& batch, const ChannelSource& source) {
 } // namespace
 
 // Gives planes to the variables displays ask for and the shader does not.
-void HitShader::add_shown_planes(std::uint64_t variables, sl_points& planes) {
+void HitShader::add_shown_planes(ShadeJob& job, std::uint64_t variables) {
+    sl_points& planes = job.planes;
+    const auto most = static_cast<std::size_t>(std::popcount(variables));
+    job.shown_planes.resize(std::max(job.shown_planes.size(), most));
     std::size_t used = 0;
     for (std::uint64_t rest = variables; rest != 0; rest &= rest - 1) {
         const auto id = static_cast<std::size_t>(std::countr_zero(rest));
         if (planes.var[id] == nullptr) {
-            planes.var[id] = shown_planes_[used++].values.data();
+            planes.var[id] = job.shown_planes[used++].values.data();
         }
     }
 }
 
-void HitShader::scatter_outputs(std::uint32_t shading_class, const sl_points& planes,
-                                std::span<const std::uint32_t> members, const ShaderEntry& shader) {
+void HitShader::scatter_outputs(ShadeJob& job) {
+    const std::span<const std::uint32_t> members = job.members;
+    const std::size_t stride = job.stride;
+    const ShaderEntry* atmosphere = class_of(job).atmosphere;
     const std::size_t num_channels = outputs_->num_channels();
     std::uint64_t num_bad = 0;
-    for (const ChannelSource& source : outputs_->sources(shading_class)) {
+    for (const ChannelSource& source : outputs_->sources(job.shading_class)) {
         Planes from;
         switch (source.from) {
         case ChannelSource::From::Displacement:
-            from = param_planes(thread_.displacement, source);
+            from = param_planes(job.displacement, source);
             break;
         case ChannelSource::From::Surface:
-            from = param_planes(thread_.surface, source);
+            from = param_planes(job.surface, source);
             break;
         case ChannelSource::From::Atmosphere:
-            from = param_planes(thread_.volume, source);
+            from = job.volume_shader == atmosphere ? param_planes(job.volume, source) : Planes{};
             break;
         case ChannelSource::From::Variable:
             from.first =
-                planes.var[source.index] + static_cast<std::size_t>(source.component) * stride_;
+                job.planes.var[source.index] + static_cast<std::size_t>(source.component) * stride;
             break;
         case ChannelSource::From::One:
             from = {&one, 0};
             break;
         }
         const float* weight =
-            source.weight < 0 ? nullptr : Oi_ + static_cast<std::size_t>(source.weight) * stride_;
+            source.weight < 0 ? nullptr : job.Oi + static_cast<std::size_t>(source.weight) * stride;
         float* out = out_extra_.data() + source.channel;
         for (std::size_t i = 0; from.first != nullptr && i < members.size(); ++i) {
             const float value = from.first[i * from.step] * (weight != nullptr ? weight[i] : 1);
@@ -75,7 +80,7 @@ void HitShader::scatter_outputs(std::uint32_t shading_class, const sl_points& pl
     }
     if (num_bad > 0) {
         thread_.counters.add(Counter::bad_values, num_bad);
-        thread_.bad.note(shader, BadResult::Output, num_bad);
+        thread_.bad.note(*class_of(job).surface, BadResult::Output, num_bad);
     }
 }
 

@@ -48,14 +48,15 @@ std::size_t HitShader::equal_values(const ShadingClass& c, std::span<std::uint32
         const std::size_t num_floats = floats_of(param);
         std::vector<float> first;
         std::vector<std::uint32_t> equal, other;
+        std::vector<geo::Hit> hits;
         for (std::size_t at = begin; at < end; at += SL_BATCH_MAX) {
             const std::size_t n = std::min<std::size_t>(SL_BATCH_MAX, end - at);
+            hits.clear();
             for (std::size_t i = 0; i < n; ++i) {
-                batch_.hits[i] = hits_[members[at + i]];
+                hits.push_back(hits_[members[at + i]]);
             }
             values_.assign(num_floats * SL_BATCH_MAX, 0);
-            frame_.world->fill_primitive_variable({batch_.hits.data(), n}, o.name, SL_BATCH_MAX,
-                                                  values_.data());
+            frame_.world->fill_primitive_variable(hits, o.name, SL_BATCH_MAX, values_.data());
             for (std::size_t i = 0; i < n; ++i) {
                 std::vector<float> value(num_floats);
                 for (std::size_t k = 0; k < num_floats; ++k) {
@@ -75,8 +76,9 @@ std::size_t HitShader::equal_values(const ShadingClass& c, std::span<std::uint32
     return end;
 }
 
-void HitShader::bind_overrides(const ShadingClass& c, Stage stage, rt::ShadeBatch& batch) {
-    const std::span<const geo::Hit> hits = subject_hits_;
+void HitShader::bind_overrides(const ShadeJob& job, Stage stage, rt::ShadeBatch& batch) {
+    const ShadingClass& c = class_of(job);
+    const std::span<const geo::Hit> hits = job.hits;
     for (const ParamOverride& o : c.overrides) {
         if (o.stage != stage) {
             continue;

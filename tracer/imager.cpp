@@ -4,6 +4,7 @@
 #include "runtime/base/parallel.h"
 #include "runtime/base/ticks.h"
 #include "tracer/services.h"
+#include "tracer/shade_job.h"
 #include "tracer/shader_set.h"
 
 #include <algorithm>
@@ -34,7 +35,11 @@ public:
 
     // Pixels first .. first+count-1 of the picture, row by row.
     void run(ThreadState& thread, std::size_t first, std::uint32_t count) {
-        rt::ShadeBatch& batch = thread.surface;
+        if (!thread.jobs) {
+            thread.jobs = std::make_unique<ShadeJobs>();
+        }
+        ShadeJob& job = thread.jobs->take();
+        rt::ShadeBatch& batch = job.surface;
         batch.begin(imager_.current(), count);
         fill(batch, first);
         Execution execution(frame_, imager_);
@@ -52,6 +57,7 @@ public:
         thread.counters.add(Counter::bad_values, num_bad);
         thread.bad.begin_bucket(first / SL_BATCH_MAX);
         thread.bad.note(imager_, BadResult::Imager, num_bad);
+        thread.jobs->give(job);
     }
 
 private:

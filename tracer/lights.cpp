@@ -62,7 +62,7 @@ LightRun& attached(Execution& execution, rib::LightId id) {
 } // namespace
 
 void LightRun::attach(Execution& asker, const LightInfo& info) {
-    const bool stale = asker_ != &asker || serial_ != asker.thread->batch_serial;
+    const bool stale = asker_ != &asker || serial_ != asker.serial;
     // Between batches of the asker: what a running one learned from the light stays.
     const bool is_new = info_ != &info || (stale && instance_ != &info.shader->current());
     if (!is_new && !stale) {
@@ -70,7 +70,7 @@ void LightRun::attach(Execution& asker, const LightInfo& info) {
     }
     info_ = &info;
     asker_ = &asker;
-    serial_ = asker.thread->batch_serial;
+    serial_ = asker.serial;
     execution_.emplace(asker.frame, *info.shader);
     execution_->thread = asker.thread;
     execution_->batch = &batch_;

@@ -61,6 +61,15 @@ std::string PixelTrace::place(base::SourcePos pos) const {
 
 // --- rays
 
+namespace {
+
+std::string ray_title(int level, bool is_first) {
+    return level > 0 ? "ray of level " + std::to_string(level)
+                     : std::string(is_first ? "camera ray" : "ray goes on");
+}
+
+} // namespace
+
 void PixelTrace::begin_bucket(const SampleBlock& block) {
     for (std::uint32_t i = 0; i < block.count && samples_.size() < max_told; ++i) {
         if (block.px[i] != x_ || block.py[i] != y_) {
@@ -80,7 +89,7 @@ void PixelTrace::begin_bucket(const SampleBlock& block) {
 }
 
 void PixelTrace::ray(std::uint32_t sample, const geo::RayPacket& packet, std::size_t lane,
-                     const geo::Hit& hit) {
+                     const geo::Hit& hit, int level) {
     SampleText* s = of_sample(sample);
     if (s == nullptr) {
         return;
@@ -88,9 +97,9 @@ void PixelTrace::ray(std::uint32_t sample, const geo::RayPacket& packet, std::si
     const float origin[] = {packet.ox[lane], packet.oy[lane], packet.oz[lane]};
     const float direction[] = {packet.dx[lane], packet.dy[lane], packet.dz[lane]};
     line(s->text, at_ray,
-         std::string(s->num_hits == 0 ? "camera ray" : "ray goes on") + " from " +
-             numbers_text(origin) + " along " + numbers_text(direction) + ", t " +
-             number_text(packet.tnear[lane]) + " to " + number_text(packet.tfar[lane]));
+         ray_title(level, s->num_hits == 0) + " from " + numbers_text(origin) + " along " +
+             numbers_text(direction) + ", t " + number_text(packet.tnear[lane]) + " to " +
+             number_text(packet.tfar[lane]));
     s->is_hit = hit.valid();
     if (hit.valid()) {
         ++s->num_hits;
@@ -162,12 +171,8 @@ void PixelTrace::describe_hit(SampleText& to, const geo::RayPacket& packet, std:
 
 // --- shaders
 
-void PixelTrace::begin_batch(std::span<const std::uint32_t> ray_of_hit,
-                             std::span<const std::uint32_t> members) {
-    sample_of_point_.clear();
-    for (const std::uint32_t member : members) {
-        sample_of_point_.push_back(ray_of_hit.empty() ? member : ray_of_hit[member]);
-    }
+void PixelTrace::begin_batch(std::span<const std::uint32_t> sample_of_point) {
+    sample_of_point_.assign(sample_of_point.begin(), sample_of_point.end());
 }
 
 void PixelTrace::before_shader(const Execution& execution, rt::ShadeBatch& batch) {

@@ -28,12 +28,11 @@ public:
     // --- told by the renderer; samples are numbered as in their SampleBlock
     void begin_bucket(const SampleBlock& block);
     // A ray of a sample and what it met; the first is the camera's.
+    // level: 0 of camera rays; those of shaders are indented by it.
     void ray(std::uint32_t sample, const geo::RayPacket& packet, std::size_t lane,
-             const geo::Hit& hit);
-    // Hits members[i] are point i of the batches that follow; ray_of_hit is empty where hit i is
-    // sample i.
-    void begin_batch(std::span<const std::uint32_t> ray_of_hit,
-                     std::span<const std::uint32_t> members);
+             const geo::Hit& hit, int level);
+    // The samples of the points of the batches that follow.
+    void begin_batch(std::span<const std::uint32_t> sample_of_point);
     void before_shader(const Execution& execution, rt::ShadeBatch& batch);
     void after_shader(const Execution& execution, rt::ShadeBatch& batch);
     // What a light gave to the lanes asked; the shadow rays it took come before.

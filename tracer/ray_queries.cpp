@@ -2,6 +2,7 @@
 #include "tracer/ray_queries.h"
 
 #include "tracer/execution.h"
+#include "tracer/ray_levels.h"
 
 #include <algorithm>
 #include <bit>
@@ -26,12 +27,33 @@ void miss(sl_ray_query& query, std::uint32_t lane, int ray_level) {
     query.level_missed[lane] = static_cast<float>(ray_level + 1);
 }
 
-} // namespace
-
-void answer_rays(Execution& execution, sl_ray_query& query) {
+void miss_all(const Execution& execution, sl_ray_query& query) {
     query.hit = 0;
     for (std::uint32_t rest = query.mask; rest != 0; rest &= rest - 1) {
         miss(query, static_cast<std::uint32_t>(std::countr_zero(rest)), execution.ray_level);
+    }
+}
+
+} // namespace
+
+void answer_rays(Execution& execution, sl_ray_query& query) {
+    ThreadState* thread = execution.thread;
+    if (thread == nullptr || thread->levels == nullptr || execution.frame.world == nullptr) {
+        miss_all(execution, query); // parameters are being bound, or an imager runs: no rays
+        return;
+    }
+    switch (query.kind) {
+    case SL_RAYS_trace:
+    case SL_RAYS_fulltrace:
+    case SL_RAYS_hittest:
+    case SL_RAYS_gather: {
+        const DeeperShader deeper(*thread);
+        const RayAsk ask{&query, &execution, nullptr};
+        deeper.wave().answer({&ask, 1});
+        return;
+    }
+    default: // transmission, occlusion and their like are answered elsewhere: nothing is in the way
+        miss_all(execution, query);
     }
 }
 

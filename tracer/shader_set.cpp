@@ -193,6 +193,7 @@ ShaderSet::ShaderSet(const ShaderSources& sources)
             load(sources, volume, SL_SHADER_volume, false);
         }
     }
+    load(sources, scene.camera_exterior, SL_SHADER_volume, false);
     for (const rib::Light& light : scene.lights) {
         load(sources, light.shader, SL_SHADER_light, light.in_camera_space);
     }

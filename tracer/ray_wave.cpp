@@ -1,0 +1,446 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracer/ray_wave.h"
+
+#include "tracer/pixel_trace.h"
+#include "tracer/ray_directions.h"
+#include "tracer/ray_levels.h"
+#include "tracer/ray_packets.h"
+#include "tracer/ray_queries.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace trace {
+
+namespace {
+
+using base::V3d;
+using base::V3f;
+
+constexpr std::uint32_t lanes_of_packet = geo::RayPacket::size;
+constexpr float very_far = 1e30f; // SL's distance to nothing
+
+V3f get(const float* planes, std::uint32_t lanes, std::uint32_t lane) {
+    return {planes[lane], planes[lanes + lane], planes[2 * lanes + lane]};
+}
+
+void put(float* planes, std::uint32_t lanes, std::uint32_t lane, const V3f& v) {
+    planes[lane] = v.x, planes[lanes + lane] = v.y, planes[2 * lanes + lane] = v.z;
+}
+
+bool is_shaded(const sl_ray_query& query) {
+    return query.kind == SL_RAYS_trace || query.kind == SL_RAYS_fulltrace ||
+           query.kind == SL_RAYS_gather;
+}
+
+bool is_mine(const sl_ray_query& query) {
+    return is_shaded(query) || query.kind == SL_RAYS_hittest;
+}
+
+bool has_text(sl_string text) {
+    return text != nullptr && text[0] != '\0';
+}
+
+RayFilter filter_of(const sl_ray_query& query) {
+    RayFilter filter;
+    if (has_text(query.text[SL_RAY_TEXT_subset])) {
+        filter.subset = query.text[SL_RAY_TEXT_subset];
+    }
+    if (has_text(query.text[SL_RAY_TEXT_hitsides])) {
+        filter.sides = query.text[SL_RAY_TEXT_hitsides];
+    }
+    return filter;
+}
+
+std::uint32_t seed_of(std::uint32_t parent, const V3f& direction, std::uint32_t sample) {
+    std::uint32_t seed = PixelHash::mix(parent + 0x72617973U + sample);
+    for (int k = 0; k < 3; ++k) {
+        seed = PixelHash::mix(seed ^ std::bit_cast<std::uint32_t>(direction[k]));
+    }
+    return seed;
+}
+
+int num_samples(const sl_ray_query& query, std::uint32_t lane) {
+    const float given = query.option[SL_RAY_OPTION_samples][lane];
+    constexpr float most = 65536;
+    const bool counts = query.kind == SL_RAYS_trace || query.kind == SL_RAYS_fulltrace;
+    return counts && given >= 1 ? static_cast<int>(std::min(given, most)) : 1;
+}
+
+} // namespace
+
+RayWave::RayWave(const FrameContext& frame, RayLayers& layers, ThreadState& thread)
+    : frame_(frame), layers_(layers), thread_(thread) {}
+
+void RayWave::answer(std::span<ShadeJob* const> waiting) {
+    waiting_asks_.clear();
+    for (ShadeJob* job : waiting) {
+        for (std::uint32_t packet = 0; packet < job->surface.num_packets(); ++packet) {
+            sl_ray_query* query = job->surface.request(packet);
+            if (query == nullptr) {
+                continue;
+            }
+            if (is_mine(*query)) {
+                waiting_asks_.push_back({query, &*job->surface_execution, job});
+            } else {
+                answer_rays(*job->surface_execution, *query);
+            }
+        }
+    }
+    answer(waiting_asks_);
+}
+
+void RayWave::answer(std::span<const RayAsk> asks) {
+    asks_ = asks;
+    rays_.clear();
+    hits_of_lane_.assign(asks.size() * SL_LANES_MAX, 0);
+    for (std::uint32_t i = 0; i < asks.size(); ++i) {
+        begin_answer(*asks[i].query);
+        add_rays(i);
+    }
+    flush();
+    for (std::size_t i = 0; i < asks.size(); ++i) {
+        end_answer(i);
+    }
+}
+
+// --- questions to rays
+
+void RayWave::begin_answer(sl_ray_query& query) const {
+    const std::size_t planes = 3 * std::size_t{query.lanes};
+    query.hit = 0;
+    for (float* values : {query.C, query.Phit, query.Nhit, query.Pmiss, query.Rmiss}) {
+        std::fill_n(values, planes, 0.0f);
+    }
+    std::fill_n(query.distance, query.lanes, 0.0f);
+    std::fill_n(query.level_missed, query.lanes, 0.0f);
+    for (std::int32_t c = 0; c < std::min<std::int32_t>(query.num_channels, SL_RAY_CHANNELS_MAX);
+         ++c) {
+        query.channel[c].set = 0;
+    }
+}
+
+void RayWave::add_rays(std::uint32_t ask) {
+    const sl_ray_query& query = *asks_[ask].query;
+    const RayFilter filter = filter_of(query);
+    const bool shades = is_shaded(query);
+    if (!rays_.empty() && (!(filter == filter_) || shades != shades_)) {
+        flush();
+    }
+    filter_ = filter;
+    shades_ = shades;
+    for (std::uint32_t rest = query.mask; rest != 0; rest &= rest - 1) {
+        add_lane(ask, static_cast<std::uint32_t>(std::countr_zero(rest)));
+    }
+}
+
+RayWave::Place RayWave::place_of(const RayAsk& ask, std::uint32_t lane) const {
+    Place place;
+    const Execution& execution = *ask.execution;
+    place.execution = &execution;
+    place.point = execution.asked_first + ask.query->first + lane;
+    const BatchSubject* subject = execution.subject;
+    if (subject != nullptr && place.point < subject->hits.size()) {
+        place.hit = &subject->hits[place.point];
+    }
+    if (subject != nullptr && place.point < subject->rays.seeds.size()) {
+        place.seed = subject->rays.seeds[place.point];
+    }
+    return place;
+}
+
+void RayWave::add_lane(std::uint32_t ask_index, std::uint32_t lane) {
+    const RayAsk& ask = asks_[ask_index];
+    const sl_ray_query& query = *ask.query;
+    const V3d D(get(query.D, query.lanes, lane));
+    const double length = base::length(D);
+    const Place place = place_of(ask, lane);
+    const std::uint32_t attributes =
+        place.hit != nullptr ? frame_.world->binding(*place.hit).attributes : rib::none;
+    const RaySubject rays =
+        ask.execution->subject != nullptr ? ask.execution->subject->rays : RaySubject{};
+    if (!(length > 0) || !std::isfinite(length) ||
+        !std::isfinite(base::length(get(query.P, query.lanes, lane)))) {
+        return; // no direction, or no number: nothing is met
+    }
+    if (shades_ &&
+        !thread_.levels->options().allows(attributes, rays.level + 1, rays.diffuse_level)) {
+        too_deep(ask, lane);
+        return;
+    }
+    const V3d axis = D / length;
+    const int samples = num_samples(query, lane);
+    const bool is_gather = query.kind == SL_RAYS_gather;
+    const double angle = static_cast<double>(
+        is_gather ? query.angle[lane] : query.option[SL_RAY_OPTION_samplecone][lane]);
+    ConeSample which;
+    which.seed = seed_of(place.seed, V3f(axis), 0);
+    which.samples = is_gather ? std::max(query.samples, 1) : samples;
+    which.shift = query.option[SL_RAY_OPTION_samplebase][lane];
+    const sl_string distribution = query.text[SL_RAY_TEXT_distribution];
+    which.distribution = has_text(distribution) ? (std::string_view(distribution) == "cosine"
+                                                       ? ConeDistribution::Cosine
+                                                       : ConeDistribution::Uniform)
+                         : is_gather            ? ConeDistribution::Cosine
+                                                : ConeDistribution::Uniform;
+    RayCone wide = cone(query, lane, place, axis, length);
+    if (angle > 0) {
+        wide.widen(static_cast<float>(std::sqrt(cone_solid_angle(angle) / which.samples)));
+    }
+    const float farthest = query.option[SL_RAY_OPTION_maxdist][lane];
+    for (int s = 0; s < samples; ++s) {
+        which.sample = is_gather ? query.sample : s;
+        const V3d d = angle > 0 ? cone_direction(axis, angle, which) : axis;
+        Ray ray;
+        const V3f direction(d);
+        ray.ray = {origin(ask, lane, place, direction), direction,
+                   farthest < very_far && farthest > 0 ? farthest
+                                                       : std::numeric_limits<float>::infinity(),
+                   place.hit != nullptr ? place.hit->time : frame_.spaces.shutter_open(),
+                   geo::ReflectionRay};
+        ray.cone = wide;
+        ray.medium = medium(place, direction);
+        ray.ask = ask_index;
+        ray.lane = lane;
+        ray.seed = seed_of(place.seed, direction, static_cast<std::uint32_t>(which.sample));
+        ray.sample = place.point < rays.samples.size() ? rays.samples[place.point] : ~0U;
+        rays_.push_back(ray);
+        if (rays_.size() >= max_rays) {
+            flush();
+        }
+    }
+}
+
+// As if it met nothing.
+void RayWave::too_deep(const RayAsk& ask, std::uint32_t lane) {
+    sl_ray_query& query = *ask.query;
+    thread_.counters.add(Counter::rays_too_deep);
+    const int level = ask.execution->ray_level + 1;
+    query.level_missed[lane] = static_cast<float>(level);
+    put(query.Pmiss, query.lanes, lane, get(query.P, query.lanes, lane));
+    put(query.Rmiss, query.lanes, lane, get(query.D, query.lanes, lane));
+}
+
+// Rays from the point that is shaded start outside its rounding error; points that shaders made up
+// lie on nothing and start as they are. What went through another space and back is the same point.
+V3f RayWave::origin(const RayAsk& ask, std::uint32_t lane, const Place& place,
+                    const V3f& direction) const {
+    const sl_ray_query& query = *ask.query;
+    const V3f P = get(query.P, query.lanes, lane);
+    const float bias = query.option[SL_RAY_OPTION_bias][lane];
+    if (bias > 0) {
+        return P + direction * bias;
+    }
+    if (place.hit == nullptr) {
+        return P;
+    }
+    const V3f outside = frame_.world->spawn_origin(*place.hit, direction);
+    const Execution& asker =
+        place.execution->asked_by != nullptr ? *place.execution->asked_by : *place.execution;
+    rt::ShadeBatch* batch = asker.batch;
+    if (batch != nullptr && batch->has(SL_VAR_P) && place.point < batch->count()) {
+        const std::size_t stride = batch->stride();
+        const float* shaded = batch->plane(SL_VAR_P) + place.point;
+        if (shaded[0] == P.x && shaded[stride] == P.y && shaded[2 * stride] == P.z) {
+            return outside;
+        }
+    }
+    const V3f other = frame_.world->spawn_origin(*place.hit, -direction);
+    const V3f middle = (outside + other) * 0.5f;
+    return base::length(P - middle) <= base::length(outside - other) ? outside : P;
+}
+
+// Where the shader knows no differences the ray goes on as wide as the one that came.
+RayCone RayWave::cone(const sl_ray_query& query, std::uint32_t lane, const Place& place,
+                      const V3d& direction, double length) const {
+    const auto triple = [&](const float* planes) { return V3d(get(planes, query.lanes, lane)); };
+    const RayCone cone = RayCone::from(direction, triple(query.P_u), triple(query.P_v),
+                                       triple(query.D_u) / length, triple(query.D_v) / length);
+    if (!cone.is_empty()) {
+        return cone;
+    }
+    const BatchSubject* subject = place.execution->subject;
+    if (subject == nullptr || place.point >= subject->incident.footprint.size() ||
+        place.point >= subject->rays.spread.size()) {
+        return {};
+    }
+    return RayCone::from(subject->incident.footprint[place.point],
+                         subject->rays.spread[place.point]);
+}
+
+// A surface's rays go out on the side they point to; what volumes and lights trace stays within.
+MediumId RayWave::medium(const Place& place, const V3f& direction) const {
+    Media& media = thread_.levels->media();
+    const BatchSubject* subject = place.execution->subject;
+    if (!media.any() || subject == nullptr) {
+        return 0;
+    }
+    const MediumId came =
+        place.point < subject->rays.media.size() ? subject->rays.media[place.point] : 0;
+    const int type = place.execution->running.object().type;
+    if (place.hit == nullptr || type != SL_SHADER_surface) {
+        return came;
+    }
+    const V3f Ng = geometric_normal(*frame_.world, *place.hit);
+    return media.behind(came, frame_.world->binding(*place.hit).attributes,
+                        base::dot(Ng, direction) < 0);
+}
+
+// --- rays
+
+// Rays of one octant of directions go together; within it they keep their order, and so their
+// neighbours on the surface.
+void RayWave::sort_rays() {
+    const auto octant = [](const Ray& ray) {
+        const V3f& d = ray.ray.direction;
+        return (d.x < 0 ? 1U : 0U) | (d.y < 0 ? 2U : 0U) | (d.z < 0 ? 4U : 0U);
+    };
+    std::array<std::uint32_t, 9> begin{};
+    for (const Ray& ray : rays_) {
+        ++begin[octant(ray) + 1];
+    }
+    for (std::size_t i = 1; i < begin.size(); ++i) {
+        begin[i] += begin[i - 1];
+    }
+    order_.resize(rays_.size());
+    for (std::uint32_t i = 0; i < rays_.size(); ++i) {
+        order_[begin[octant(rays_[i])]++] = i;
+    }
+}
+
+void RayWave::flush() {
+    if (rays_.empty()) {
+        return;
+    }
+    sort_rays();
+    const std::size_t count = rays_.size();
+    packets_.assign((count + lanes_of_packet - 1) / lanes_of_packet, {});
+    seeds_.resize(count);
+    cones_.resize(count);
+    samples_.resize(count);
+    media_.resize(count);
+    labels_.resize(count);
+    for (std::size_t slot = 0; slot < count; ++slot) {
+        const Ray& ray = rays_[order_[slot]];
+        set_ray(packets_[slot / lanes_of_packet], slot % lanes_of_packet, ray.ray);
+        seeds_[slot] = ray.seed;
+        cones_[slot] = ray.cone;
+        samples_[slot] = ray.sample;
+        media_[slot] = ray.medium;
+        labels_[slot] = asks_[ray.ask].query->text[SL_RAY_TEXT_label];
+    }
+    trace(shades_);
+    std::vector<std::uint32_t> slot_of(count);
+    for (std::uint32_t slot = 0; slot < count; ++slot) {
+        slot_of[order_[slot]] = slot;
+    }
+    for (std::size_t i = 0; i < count; ++i) { // in the order they were asked for
+        fold(rays_[i], slot_of[i]);
+    }
+    rays_.clear();
+}
+
+void RayWave::trace(bool shaded) {
+    const Execution& asker = *asks_[rays_.front().ask].execution;
+    const RaySubject from = asker.subject != nullptr ? asker.subject->rays : RaySubject{};
+    RayBundle bundle;
+    bundle.count = static_cast<std::uint32_t>(rays_.size());
+    bundle.packets = packets_;
+    bundle.seeds = seeds_;
+    bundle.level = from.level + 1;
+    bundle.kind = SL_RAY_reflection;
+    bundle.diffuse_level = from.diffuse_level;
+    bundle.cones = cones_;
+    bundle.labels = labels_;
+    bundle.samples = samples_;
+    bundle.filter = filter_;
+    if (thread_.levels->media().any()) {
+        bundle.media = media_;
+    }
+    first_.resize(packets_.size() * lanes_of_packet);
+    colors_.assign(rays_.size(), Sample{});
+    misses_.assign(rays_.size(), DeepestMiss{});
+    if (shaded) {
+        layers_.trace(bundle, {colors_, {}, first_, misses_});
+    } else {
+        layers_.intersect(bundle, first_);
+        thread_.counters.add(Counter::rays_probe, rays_.size());
+    }
+}
+
+// --- answers
+
+void RayWave::fold(const Ray& ray, std::size_t slot) {
+    const RayAsk& ask = asks_[ray.ask];
+    sl_ray_query& query = *ask.query;
+    const std::uint32_t lanes = query.lanes, lane = ray.lane;
+    const auto share = 1 / static_cast<float>(num_samples(query, lane));
+    for (std::uint32_t k = 0; k < 3; ++k) {
+        query.C[k * lanes + lane] += share * colors_[slot].color[k];
+    }
+    if (first_[slot].valid()) {
+        fold_hit(ray, first_[slot]);
+    }
+    const DeepestMiss& miss = misses_[slot];
+    if (static_cast<float>(miss.level) <= query.level_missed[lane]) {
+        return;
+    }
+    query.level_missed[lane] = static_cast<float>(miss.level);
+    put(query.Pmiss, lanes, lane, {miss.origin[0], miss.origin[1], miss.origin[2]});
+    put(query.Rmiss, lanes, lane, {miss.direction[0], miss.direction[1], miss.direction[2]});
+}
+
+// Distances of several samples that meet something are averaged; the first of them tells where.
+void RayWave::fold_hit(const Ray& ray, const geo::Hit& hit) {
+    sl_ray_query& query = *asks_[ray.ask].query;
+    const std::uint32_t lanes = query.lanes, lane = ray.lane;
+    const bool is_first = (query.hit >> lane & 1U) == 0;
+    query.hit |= 1U << lane;
+    query.distance[lane] += hit.t;
+    ++hits_of_lane_[ray.ask * SL_LANES_MAX + lane];
+    if (!is_first || query.kind == SL_RAYS_trace) {
+        return;
+    }
+    alignas(64) float P[3 * SL_LANES_MAX] = {}, N[3 * SL_LANES_MAX] = {};
+    sl_points points = {};
+    points.var[SL_VAR_P] = P;
+    points.var[SL_VAR_N] = N;
+    frame_.world->fill({&hit, 1}, {}, 1ULL << SL_VAR_P | 1ULL << SL_VAR_N, SL_LANES_MAX, points,
+                       nullptr, nullptr);
+    put(query.Phit, lanes, lane, get(P, SL_LANES_MAX, 0));
+    put(query.Nhit, lanes, lane, get(N, SL_LANES_MAX, 0));
+}
+
+void RayWave::end_answer(std::size_t index) {
+    const RayAsk& ask = asks_[index];
+    sl_ray_query& query = *ask.query;
+    for (std::uint32_t lane = 0; lane < query.lanes; ++lane) {
+        const std::uint32_t hits = hits_of_lane_[index * SL_LANES_MAX + lane];
+        query.distance[lane] =
+            hits > 0 ? query.distance[lane] / static_cast<float>(hits) : very_far;
+        if (ask.job != nullptr && query.level_missed[lane] > 0) {
+            note_miss(*ask.job, query, lane);
+        }
+    }
+}
+
+// The tree of the ray that met this point grows by these.
+void RayWave::note_miss(ShadeJob& job, const sl_ray_query& query, std::uint32_t lane) {
+    job.misses.resize(job.count());
+    const std::size_t point = query.first + lane;
+    if (point >= job.misses.size() ||
+        static_cast<float>(job.misses[point].level) >= query.level_missed[lane]) {
+        return;
+    }
+    DeepestMiss& miss = job.misses[point];
+    miss.level = static_cast<int>(query.level_missed[lane]);
+    for (std::uint32_t k = 0; k < 3; ++k) {
+        miss.origin[k] = query.Pmiss[k * query.lanes + lane];
+        miss.direction[k] = query.Rmiss[k * query.lanes + lane];
+    }
+}
+
+} // namespace trace

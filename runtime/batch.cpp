@@ -248,9 +248,13 @@ sl_string* ShadeBatch::param_uniform_string(int index) {
     return p ? reinterpret_cast<sl_string*>(slot(*p)) : nullptr;
 }
 
-std::uint32_t ShadeBatch::run(const ShadeContext& context) {
+void ShadeBatch::bind(const ShadeContext& context) {
     batch_.services = context.services;
     batch_.engine = context.engine;
+}
+
+std::uint32_t ShadeBatch::run(const ShadeContext& context) {
+    bind(context);
     const sl_variant& variant = instance_->shader().variant();
     std::uint32_t num_suspended = 0;
     for (std::uint32_t packet = 0; packet < num_packets(); ++packet) {

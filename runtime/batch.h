@@ -85,6 +85,8 @@ public:
     }
     [[nodiscard]] const std::uint32_t* lit_words() const { return lit_; }
 
+    // What serves packets that somebody else runs (raw()).
+    void bind(const ShadeContext& context);
     // Shades every packet that is not finished and returns how many are suspended afterwards: 0
     // when the batch is done. Answer request() of those, then call run() again.
     std::uint32_t run(const ShadeContext& context);

@@ -125,7 +125,7 @@ TEST(Facts, Bits) {
          SL_FACT_shader_space},
         {"surface a() { float x; attribute(\"y\", x); Ci = x; }", SL_FACT_attributes},
         {"surface a() { Ci = random(); }", SL_FACT_random},
-        {"surface a() { Ci = trace(P, I); }", SL_FACT_traces},
+        {"surface a() { Ci = trace(P, I); }", SL_FACT_traces | SL_FACT_area_operators},
         {"surface a() { Ci = environment(\"x\", I); }", SL_FACT_textures | SL_FACT_area_operators},
         {"light a() { illuminate(P) Cl = 1; }", SL_FACT_directional},
         {"light a() { solar(vector 1, 0) Cl = 1; }", SL_FACT_directional | SL_FACT_solar},

@@ -25,7 +25,7 @@ constexpr Axes NoAxis = 0, AxisU = 1, AxisV = 2, BothAxes = 3;
 // What becomes of a built-in at the auxiliary points.
 enum class AuxRule : std::uint8_t {
     Function, // a value of its arguments: f(a + d) - f(a)
-    Operator, // an area operator
+    Operator, // an area operator; rays: their footprint, the results are the same at all points
     MainOnly  // runs for the main point only; its results are the same at all points
 };
 [[nodiscard]] AuxRule aux_rule(const Stmt& call);

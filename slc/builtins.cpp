@@ -19,7 +19,7 @@ constexpr std::uint32_t SL_PURE = PropPure, SL_CONTEXT = PropContext, SL_VARIES 
                         SL_RANDOM = PropRandom, SL_CHANNEL = PropChannel, SL_INOUT = PropInout,
                         SL_DIFF [[maybe_unused]] = PropDiff,
                         SL_LINEAR [[maybe_unused]] = PropLinear, SL_HIDDEN = PropHidden,
-                        SL_EXACT = PropExact;
+                        SL_EXACT = PropExact, SL_WAITS = PropWaits;
 
 struct RawRow {
     std::string_view name, signature, body;

@@ -30,7 +30,8 @@ enum Property : std::uint32_t {
     PropDiff = 1u << 14,
     PropLinear = 1u << 15,
     PropHidden = 1u << 16,
-    PropExact = 1u << 17
+    PropExact = 1u << 17,
+    PropWaits = 1u << 18
 };
 
 // One place of a signature.

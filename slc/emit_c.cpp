@@ -26,7 +26,8 @@ std::uint32_t bytes_of(const Var& p) {
 class CFile {
 public:
     CFile(const Program& program, const Facts& facts, const EmitOptions& options)
-        : program_(program), facts_(facts), options_(options), names_(c_names(program)) {}
+        : program_(program), facts_(facts), options_(options), waits_(program),
+          names_(c_names(program)) {}
 
     std::string text() {
         head();
@@ -53,6 +54,8 @@ private:
     void param_block();
     void constant_arrays();
     void shade();
+    void shade_head(std::string_view frame);
+    void shade_body(const Lines& body);
     void init();
     void variant();
     void descriptor();
@@ -63,6 +66,7 @@ private:
     const Program& program_;
     const Facts& facts_;
     const EmitOptions& options_;
+    Suspensions waits_;
     std::vector<std::string> names_;
     StringPool strings_;
     Lines out_;
@@ -128,10 +132,41 @@ void CFile::constant_arrays() {
 }
 
 void CFile::shade() {
+    Lines body(1);
+    Emitter emitter(program_, program_.body, facts_.written, Emitter::Mode::Shade, c_dialect,
+                    names_, strings_, body);
+    if (options_.profile) {
+        body.line("sl_profile_cursor profile[1];");
+        body.line("sl_profile_begin(profile, call);");
+        emitter.stamp_places(places_);
+    }
+    if (options_.checked) {
+        emitter.check_numbers();
+    }
+    emitter.wait_at(waits_);
+    emitter.emit_body();
+    if (options_.profile) {
+        body.line("sl_profile_at(profile, 0, live);");
+    }
+    if (waits_.empty()) {
+        shade_head("frame");
+        out_.line("(void)frame; /* this shader never suspends */");
+    } else {
+        emitter.declare_frame(out_);
+        shade_head("sl_head");
+        out_.line("struct frame *const frame = (struct frame *)(void *)sl_head;");
+    }
+    shade_body(body);
+}
+
+void CFile::shade_head(std::string_view frame) {
     out_.line("static sl_status shade(const sl_batch *batch, uint32_t first, uint32_t count, "
-              "sl_frame *frame)");
+              "sl_frame *" +
+              std::string(frame) + ")");
     out_.open("{");
-    out_.line("(void)frame; /* this shader never suspends */");
+}
+
+void CFile::shade_body(const Lines& body) {
     out_.line("sl_call call[1];");
     out_.line("sl_call_begin(call, batch, first, count);");
     out_.line("sli live = call->live;");
@@ -141,20 +176,7 @@ void CFile::shade() {
         out_.line("struct params *const params = batch->params;");
         out_.line("(void)params;");
     }
-    Emitter emitter(program_, program_.body, facts_.written, Emitter::Mode::Shade, c_dialect,
-                    names_, strings_, out_);
-    if (options_.profile) {
-        out_.line("sl_profile_cursor profile[1];");
-        out_.line("sl_profile_begin(profile, call);");
-        emitter.stamp_places(places_);
-    }
-    if (options_.checked) {
-        emitter.check_numbers();
-    }
-    emitter.emit_body();
-    if (options_.profile) {
-        out_.line("sl_profile_at(profile, 0, live);");
-    }
+    out_.append(body);
     out_.line("return SL_DONE;");
     out_.close();
     out_.line("");
@@ -186,9 +208,11 @@ void CFile::variant() {
     const std::string n = std::to_string(options_.lanes);
     out_.line("__attribute__((visibility(\"hidden\"))) extern const sl_variant sl_variant_" + n +
               ";");
+    const std::string_view frame =
+        waits_.empty() ? "0, 0" : "sizeof(struct frame), _Alignof(struct frame)";
     out_.line("const sl_variant sl_variant_" + n + " = {" +
-              (options_.lanes == 8 ? "SL_ISA_avx2" : "SL_ISA_any") +
-              ", SL_LANES, 0, 0, shade, init};");
+              (options_.lanes == 8 ? "SL_ISA_avx2" : "SL_ISA_any") + ", SL_LANES, " +
+              std::string(frame) + ", shade, init};");
     out_.line("");
 }
 

@@ -16,6 +16,13 @@ constexpr std::string_view sl_type_names[] = {"SL_TYPE_void",   "SL_TYPE_float",
                                               "SL_TYPE_point",  "SL_TYPE_vector", "SL_TYPE_normal",
                                               "SL_TYPE_matrix", "SL_TYPE_string"};
 
+// Is about the light of the loop around it.
+bool asks_light(const BuiltinRow& row) {
+    return row.body == "message_lightsource" || row.body == "shadername_of";
+}
+
+} // namespace
+
 std::string joined(const std::vector<std::string>& parts) {
     std::string text;
     for (const std::string& p : parts) {
@@ -23,13 +30,6 @@ std::string joined(const std::vector<std::string>& parts) {
     }
     return text;
 }
-
-// Is about the light of the loop around it.
-bool asks_light(const BuiltinRow& row) {
-    return row.body == "message_lightsource" || row.body == "shadername_of";
-}
-
-} // namespace
 
 bool Emitter::runs_on_lanes(const Stmt& s) const {
     if (mode_ == Mode::Init || (s.dst != no_var && !varying(s.dst))) {
@@ -42,6 +42,10 @@ bool Emitter::runs_on_lanes(const Stmt& s) const {
 }
 
 void Emitter::call(const Stmt& s, const Block& b) {
+    if (waits(s)) {
+        waiting_call(s, b);
+        return;
+    }
     const BuiltinRow& row = builtin_rows()[static_cast<std::size_t>(s.builtin)];
     const bool is_difference = s.op == Op::Difference;
     const std::size_t num_args =
@@ -89,18 +93,26 @@ void Emitter::call(const Stmt& s, const Block& b) {
     }
     if (!c.texts.empty()) {
         value = for_each_text(c, value);
-    } else if (s.dst == no_var) {
-        out_.line(value.text + ";");
+        if (s.dst == no_var) {
+            return;
+        }
     }
-    if (s.dst != no_var) {
-        assign(s.dst, value, b);
+    finish_call(c, value);
+}
+
+// The call's text, and where its results go.
+void Emitter::finish_call(const Call& c, const Expr& value) {
+    if (c.s.dst != no_var) {
+        assign(c.s.dst, value, c.b);
+    } else {
+        out_.line(value.text + ";");
     }
     for (const auto& [v, temporary] : c.through) {
         Expr result;
         result.text = temporary;
         result.form = form(v);
         result.varying = c.lanes;
-        assign(v, result, b);
+        assign(v, result, c.b);
     }
 }
 

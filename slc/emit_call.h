@@ -17,6 +17,9 @@ struct CallText {
     std::string lanes, one;
 };
 
+// "a, b, c"
+[[nodiscard]] std::string joined(const std::vector<std::string>& parts);
+
 struct Emitter::Call {
     const Stmt& s;
     const Block& b;

@@ -53,6 +53,7 @@ void Emitter::emit_body() {
     if (!counted_.empty()) {
         out_.line(std::string(dialect_.uniform_truth) + " sl_steps = SL_STEPS_AT_ONCE;");
     }
+    resume_switch();
     check_inputs();
     block(body_);
     place_label("stopped" + label_suffix_);

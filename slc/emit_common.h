@@ -13,6 +13,7 @@
 #include "slc/emit_flow.h"
 #include "slc/ir.h"
 #include "slc/loop_bounds.h"
+#include "slc/suspension.h"
 
 #include <map>
 #include <string>
@@ -63,6 +64,7 @@ private:
 // Indented lines.
 class Lines {
 public:
+    explicit Lines(int depth = 0) : depth_(depth) {}
     void line(std::string_view text);
     void raw(std::string_view text); // no indentation: preprocessor lines, labels
     void open(std::string_view text) {
@@ -77,6 +79,7 @@ public:
         close(text);
         ++depth_;
     }
+    void append(const Lines& lines) { text_ += lines.text_; }
     [[nodiscard]] const std::string& text() const { return text_; }
 
 private:
@@ -104,6 +107,10 @@ public:
     void stamp_places(std::vector<Loc>& places) { places_ = &places; }
     // From now on emitted code tells where values stop being numbers (emit_check.cpp).
     void check_numbers() { checked_ = true; }
+    // The code returns SL_SUSPENDED at these points (emit_suspend.cpp).
+    void wait_at(const Suspensions& points);
+    // Of the body that has been emitted.
+    void declare_frame(Lines& out) const;
 
 private:
     // --- values (emit_expr.cpp)
@@ -144,6 +151,7 @@ private:
     // --- calls (emit_call.cpp)
     struct Call;
     void call(const Stmt& s, const Block& b);
+    void finish_call(const Call& c, const Expr& value);
     [[nodiscard]] bool runs_on_lanes(const Stmt& s) const;
     void fixed_arguments(Call& c);
     // emit_distinct.cpp
@@ -160,6 +168,20 @@ private:
     [[nodiscard]] std::string address_of(VarId v);
     void refresh_planes(std::uint64_t reads, const Block& b);
     void store_outputs(const Block& b);
+
+    // --- waiting for rays (emit_suspend.cpp)
+    struct Kept { // of the emitted code itself
+        std::string name;
+        bool is_light_loop; // else a mask
+    };
+    [[nodiscard]] bool waits(const Stmt& s) const;
+    void waiting_call(const Stmt& s, const Block& b);
+    void question(Call& c);
+    [[nodiscard]] std::vector<Kept> control_state(const Block& b) const;
+    void save_and_restore(const SuspensionPoint& point, const Block& b, bool restores);
+    void declare_record(const SuspensionPoint& point, const Block& b);
+    void send_again(const Block& b);
+    void resume_switch();
 
     // --- checks (emit_check.cpp)
     [[nodiscard]] bool is_checkable(VarId v) const;
@@ -182,6 +204,7 @@ private:
     void scope(const Stmt& s, const Block& b);
     void illuminance(const Stmt& s, const Block& b);
     void light_options(const Stmt& s, const std::string& lights);
+    void light_sends(const Stmt& s, const std::string& lights);
     [[nodiscard]] std::string lights_around(const Block& b) const;
     void illuminate(const Stmt& s, const Block& b);
     void gather(const Stmt& s);
@@ -232,6 +255,9 @@ private:
     Flow flow_;
     CountedLoops counted_;
     bool checked_ = false;
+    const Suspensions* waits_ = nullptr;
+    bool keeps_counters_ = false;
+    Lines records_{2}; // members of the frame
     std::unordered_map<const Block*, std::string> masks_;
     std::unordered_map<const Stmt*, std::string>
         stems_; // "loop_1": names of a construct's masks and labels

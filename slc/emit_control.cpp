@@ -408,15 +408,22 @@ void Emitter::illuminance(const Stmt& s, const Block& b) {
 
 // "lightcache" and what goes to the lights, before the loop.
 void Emitter::light_options(const Stmt& s, const std::string& lights) {
-    std::string sends;
-    std::size_t num_sends = 0;
     for (const auto& [option, v] : s.options) {
         if (option == "lightcache" && var(v).type == Type::String) {
             Expr mode = use(v);
             mode = mode.varying ? apply("lane_s", Form::String, true, {mode.text, "0"}) : mode;
             out_.line(lights + ".refresh = " + mode.text + " == " + string_literal("refresh") +
                       ";");
-        } else if (option.starts_with("send:light:")) {
+        }
+    }
+    light_sends(s, lights);
+}
+
+void Emitter::light_sends(const Stmt& s, const std::string& lights) {
+    std::string sends;
+    std::size_t num_sends = 0;
+    for (const auto& [option, v] : s.options) {
+        if (option.starts_with("send:light:")) {
             sends += (num_sends > 0 ? ", " : "") +
                      std::string("{SL_TYPE_string, 0, 0, (sl_string[]){") +
                      string_literal(option.substr(11)) + "}}, " +

@@ -35,7 +35,8 @@ std::string_view Emitter::type_word(Form form, bool is_varying) const {
 }
 
 std::string Emitter::declarator(VarId v, bool constant) const {
-    std::string text = constant ? "const " : "";
+    const bool is_restored = waits_ != nullptr && waits_->is_saved(v);
+    std::string text = constant && !is_restored ? "const " : "";
     if (is_truth(v)) {
         text += varying(v) ? dialect_.varying_truth : dialect_.uniform_truth;
     } else {

@@ -25,7 +25,7 @@ constexpr std::string_view reserved[] = {
 // Such a stem followed by a number is a mask, a label or a temporary of the emitter.
 constexpr std::string_view own_stems[] = {"mask_",   "loop_", "iteration_", "scope_",
                                           "lights_", "lit_",  "end_",       "next_",
-                                          "done_",   "out_",  "value_"};
+                                          "done_",   "out_",  "value_",     "resume_"};
 
 bool is_reserved(const std::string& name) {
     for (const std::string_view word : reserved) {

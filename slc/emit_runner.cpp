@@ -51,6 +51,9 @@ std::int32_t no_match(void*, sl_string, sl_string) {
 }
 void no_shadeop(void*, sl_string, std::uint32_t, std::uint32_t, const sl_value*, std::int32_t,
                 const sl_value*, std::int32_t) {}
+void no_rays(void*, sl_ray_query* query) {
+    query->hit = 0;
+}
 std::int32_t zero(void*) {
     return 0;
 }
@@ -77,6 +80,7 @@ sl_services empty_services(rt::StringTable&) {
     s.light_message = no_light_message;
     s.match = no_match;
     s.shadeop = no_shadeop;
+    s.rays = no_rays;
     return s;
 }
 

@@ -8,6 +8,7 @@
 #include "slc/ir.h"
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,6 +22,22 @@ struct LightSample {
     double nondiffuse = 0, nonspecular = 0;
 };
 
+// One ray, or cone of rays, as sl_ray_query describes it.
+struct RayQuestion {
+    int kind = 0; // SL_RAYS_*
+    Triple3 P{0, 0, 0}, D{0, 0, 0};
+    Triple3 P_u{0, 0, 0}, P_v{0, 0, 0}, D_u{0, 0, 0}, D_v{0, 0, 0};
+    std::map<std::string, Value> options; // name/value pairs
+};
+
+struct RayAnswer {
+    bool hit = false;
+    Triple3 C{0, 0, 0};
+    double distance = 0;
+    Triple3 Phit{0, 0, 0}, Nhit{0, 0, 0}, Pmiss{0, 0, 0}, Rmiss{0, 0, 0};
+    double level_missed = 0;
+};
+
 // The engine as the interpreter sees it. Every method has a default, so that a test overrides what
 // it needs.
 class InterpHost {
@@ -31,6 +48,8 @@ public:
     // unused).
     virtual bool light(int index, int point, const Triple3& P, const Triple3& axis,
                        double cos_angle, const std::string& category, LightSample& sample);
+    // By default nothing is hit and nothing is in the way.
+    virtual void rays(int point, const RayQuestion& question, RayAnswer& answer);
     virtual Triple3 ambient(int point, const Triple3& P);
     // Row-vector matrix; false if a space is unknown (identity is used).
     virtual bool space(const std::string& from, const std::string& to, int point, Matrix16& m);
@@ -142,6 +161,7 @@ private:
     Triple3 oriented_normal(int point, const Triple3& p_u, const Triple3& p_v) const;
     bool text(const Stmt& s, int point, Value& result);
     bool shadeop(const Stmt& s, int point, std::vector<Value>& args);
+    bool rays(const Stmt& s, int point, std::vector<Value>& args, Value& result); // interp_rays.cpp
     void random(int point, bool is_uniform, Value& result);
     void fallback(const Stmt& s, int point, Value& result);
     Triple3 illuminate_sum(const Stmt& s, int point);

@@ -38,7 +38,7 @@ void Interpreter::call_at(const Stmt& s, const Mask& mask, int point) {
         f(args, result);
     } else if (!lighting(s, point, result) && !spaces(s, point, args, result) &&
                !area(s, mask, point, result) && !text(s, point, result) &&
-               !shadeop(s, point, args) && !state(s, point, args, result)) {
+               !shadeop(s, point, args) && !rays(s, point, args, result) && !state(s, point, args, result)) {
         fallback(s, point, result);
     }
     if (director_ != nullptr && !is_known) {
@@ -351,15 +351,12 @@ bool Interpreter::area(const Stmt& s, const Mask& mask, int point, Value& result
     return true;
 }
 
-// What has no meaning without an engine: rays miss, maps are absent (the table's documented
-// fallbacks).
+// What has no meaning without an engine: maps are absent (the table's documented fallbacks).
 void Interpreter::fallback(const Stmt& s, int point, Value& result) {
     const BuiltinRow& row = builtin_of(s);
     std::fill(result.x.begin(), result.x.end(), 0.0);
     if ((row.name == "texture" || row.name == "texture_d") && row.result.type == Type::Color &&
         at(s.args[0], point).text().empty()) {
-        put(result, {1, 1, 1});
-    } else if (row.name == "visibility" || row.name == "transmission") {
         put(result, {1, 1, 1});
     }
 }

@@ -28,8 +28,19 @@ std::uint64_t VarSet::globals(int aux) const {
 
 Liveness::Liveness(const Program& program, LiveMode mode, const AuxAnalysis* aux,
                    std::uint64_t results, const Stmt* only)
-    : program_(program), mode_(mode), aux_(aux), results_(results), only_(only), entry_(program) {
-    solve();
+    : program_(program), mode_(mode), aux_(aux), results_(results), only_(only), entry_(program),
+      elsewhere_(program) {
+    if (mode != LiveMode::Packets) {
+        solve();
+    }
+}
+
+Liveness::Across Liveness::across(const Program& program,
+                                  const std::unordered_set<const Stmt*>& wait) {
+    Liveness liveness(program, LiveMode::Packets, nullptr, 0, nullptr);
+    liveness.wait_ = &wait;
+    liveness.solve();
+    return std::move(liveness.across_);
 }
 
 void Liveness::solve() {
@@ -113,10 +124,10 @@ std::vector<VarId> written_differences(const Program& program) {
 // What the engine reads when the shader has ended: the results of its type that it writes (the
 // others keep what the engine has), and output parameters.
 void Liveness::exit_set(VarSet& live) const {
+    // The end of a packet stores all it has changed.
+    const std::uint64_t all = mode_ == LiveMode::Packets ? ~0ull : results_of(program_.shader_type);
     const std::uint64_t results =
-        mode_ == LiveMode::Aux
-            ? results_
-            : results_of(program_.shader_type) & written_globals(program_, program_.body);
+        mode_ == LiveMode::Aux ? results_ : all & written_globals(program_, program_.body);
     for (int i = 0; i < SL_VAR_COUNT; ++i) {
         if ((results >> i & 1) != 0) {
             live.insert(live.global_slot(i));
@@ -129,7 +140,8 @@ void Liveness::exit_set(VarSet& live) const {
         live.insert(live.slot(program_, id));
     }
     for (const Param& p : program_.params) {
-        if (program_.vars[static_cast<std::size_t>(p.var)].is_output) {
+        if (program_.vars[static_cast<std::size_t>(p.var)].is_output ||
+            mode_ == LiveMode::Packets) {
             live.insert(live.slot(program_, p.var));
         }
     }
@@ -142,10 +154,11 @@ void Liveness::keep(const Stmt& s) {
 }
 
 bool Liveness::any_kept(const Stmt& s) const {
-    return std::any_of(s.bodies.begin(), s.bodies.end(), [&](const Block& b) {
-        return std::any_of(b.begin(), b.end(),
-                           [&](const Stmt& inner) { return kept_.contains(&inner); });
-    });
+    return mode_ == LiveMode::Packets ||
+           std::any_of(s.bodies.begin(), s.bodies.end(), [&](const Block& b) {
+               return std::any_of(b.begin(), b.end(),
+                                  [&](const Stmt& inner) { return kept_.contains(&inner); });
+           });
 }
 
 VarSet& Liveness::head(const Stmt& s) {
@@ -182,14 +195,14 @@ void Liveness::add_reads(const Stmt& s, VarSet& live) const {
 
 // An area operator takes differences of its arguments; texture(name) those of s and t.
 void Liveness::add_area_reads(const Stmt& s, VarSet& live) const {
-    for (const VarId id : s.args) {
+    for_each_read(s, [&](VarId id) {
         const bool may_differ =
             aux_ != nullptr ? aux_->differs(id) != NoAxis
                             : program_.vars[static_cast<std::size_t>(id)].detail == Detail::Varying;
         if (may_differ) {
             read(id, live);
         }
-    }
+    });
     for (const int id : {SL_VAR_s, SL_VAR_t}) {
         if ((builtin_of(s).reads >> id & 1) != 0) {
             live.insert(live.global_slot(id));
@@ -214,7 +227,35 @@ void Liveness::block(const Block& b, VarSet& live) {
     }
 }
 
+void Liveness::note_across(const Stmt& s, const VarSet& live) {
+    VarSet kept = live;
+    for_each_write(s, [&](VarId id, bool whole) {
+        if (whole) {
+            kept.erase(kept.slot(program_, id));
+        }
+    });
+    kept.merge(elsewhere_);
+    across_.insert_or_assign(&s, std::move(kept));
+}
+
+void Liveness::block_beside(const Block& b, VarSet& inside, const VarSet& live) {
+    if (mode_ != LiveMode::Packets) {
+        block(b, inside);
+        return;
+    }
+    const VarSet outer = elsewhere_;
+    elsewhere_.merge(live);
+    block(b, inside);
+    elsewhere_ = outer;
+}
+
 void Liveness::statement(const Stmt& s, VarSet& live) {
+    if (mode_ == LiveMode::Packets) {
+        keep(s);
+        if (wait_->contains(&s)) {
+            note_across(s, live);
+        }
+    }
     switch (s.op) {
     case Op::If:
         branch(s, live);
@@ -246,7 +287,7 @@ void Liveness::statement(const Stmt& s, VarSet& live) {
 
 void Liveness::simple(const Stmt& s, VarSet& live) {
     const bool is_area = mode_ == LiveMode::Aux && s.op == Op::Call && builtin_of(s).has(PropArea);
-    bool is_read = has_effect(s);
+    bool is_read = has_effect(s) || mode_ == LiveMode::Packets;
     for_each_write(
         s, [&](VarId id, bool) { is_read = is_read || live.contains(live.slot(program_, id)); });
     if (is_area && is_read) {
@@ -262,8 +303,8 @@ void Liveness::simple(const Stmt& s, VarSet& live) {
         }
     });
     // At the auxiliary points light and rays give zero, whatever their arguments.
-    const bool is_same =
-        mode_ == LiveMode::Aux && s.op == Op::Call && aux_rule(s) == AuxRule::MainOnly;
+    const bool is_same = mode_ == LiveMode::Aux && s.op == Op::Call &&
+                         (aux_rule(s) == AuxRule::MainOnly || builtin_of(s).has(PropTraces));
     if (is_area) {
         add_area_reads(s, live);
     }
@@ -296,8 +337,16 @@ void Liveness::jump(const Stmt& s, VarSet& live) {
 void Liveness::branch(const Stmt& s, VarSet& live) {
     const VarSet after = live;
     VarSet otherwise = live;
-    block(s.bodies[0], live);
-    block(s.bodies[1], otherwise);
+    const Var& condition = program_.vars[static_cast<std::size_t>(s.args[0])];
+    if (condition.detail == Detail::Varying) { // the second arm runs after the first
+        block_beside(s.bodies[1], otherwise, after);
+        VarSet beside = after;
+        beside.merge(otherwise);
+        block_beside(s.bodies[0], live, beside);
+    } else {
+        block(s.bodies[0], live);
+        block(s.bodies[1], otherwise);
+    }
     live.merge(otherwise);
     if (any_kept(s)) {
         keep(s);
@@ -337,7 +386,7 @@ void Liveness::assigned_live(const Block& b, const VarSet& after,
 void Liveness::scope(const Stmt& s, VarSet& live) {
     targets_.push_back({&s, live, {}, false});
     const VarSet after = live;
-    block(s.bodies[0], live);
+    block_beside(s.bodies[0], live, after);
     targets_.pop_back();
     if (any_kept(s)) {
         keep(s);
@@ -350,10 +399,12 @@ void Liveness::loop(const Stmt& s, VarSet& live) {
     const VarSet after = live;
     VarSet at_step = head(s);
     targets_.push_back({&s, after, {}, true});
-    block(s.bodies[2], at_step);
+    block_beside(s.bodies[2], at_step, after);
     targets_.back().after_continue = at_step;
     VarSet at_body = at_step;
-    block(s.bodies[1], at_body);
+    VarSet beside = after;
+    beside.merge(at_step);
+    block_beside(s.bodies[1], at_body, beside);
     live.merge(at_body);
     if (mode_ == LiveMode::Aux) {
         assigned_live(s.bodies[1], targets_.back().after_continue, next_round_[&s]);
@@ -363,7 +414,7 @@ void Liveness::loop(const Stmt& s, VarSet& live) {
         note_handed_on(s, after);
         add_reads(s, live);
     }
-    block(s.bodies[0], live);
+    block_beside(s.bodies[0], live, after);
     targets_.pop_back();
     changed_ = head(s).merge(live) || changed_;
 }
@@ -373,10 +424,15 @@ void Liveness::light_loop(const Stmt& s, VarSet& live) {
     const VarSet after = live;
     VarSet next = head(s); // at the start of the body, without what the statement sets
     next.merge(after);
+    if (mode_ == LiveMode::Packets) { // sent to each light
+        for (const auto& [name, id] : s.options) {
+            read(id, next);
+        }
+    }
     for (const Block& b : s.bodies) {
         VarSet at_body = next;
         targets_.push_back({&s, after, next, true});
-        block(b, at_body);
+        block_beside(b, at_body, next);
         targets_.pop_back();
         if (mode_ == LiveMode::Aux) {
             assigned_live(b, next, next_round_[&s]);

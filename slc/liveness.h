@@ -48,7 +48,9 @@ class AuxAnalysis;
 
 enum class LiveMode {
     Results, // what reaches the outputs of the shader, or is printed
-    Aux // what reaches the arguments of area operators: the slice evaluated at the auxiliary points
+    Aux,     // what reaches the arguments of area operators: the slice evaluated at the auxiliary
+             // points
+    Packets  // what any lane of a packet reads later, in code that runs whether it matters or not
 };
 
 // Predefined variables that statements of the block assign; in lights also what illuminate and
@@ -78,6 +80,12 @@ public:
     // Slices: the value of the area operator is read in the slice.
     [[nodiscard]] bool result_matters(const Stmt& s) const { return read_operators_.contains(&s); }
     [[nodiscard]] const VarSet& at_entry() const { return entry_; }
+
+    // What must outlive each of the calls `wait`, while other lanes of the packet may be elsewhere:
+    // in the other arm, out of the loop. What the call sets in all lanes is not in it.
+    using Across = std::unordered_map<const Stmt*, VarSet>;
+    [[nodiscard]] static Across across(const Program& program,
+                                       const std::unordered_set<const Stmt*>& wait);
 
 private:
     using Handed = std::unordered_map<const Stmt*, std::unordered_set<VarId>>;
@@ -115,6 +123,9 @@ private:
     VarSet& head(const Stmt& s);
     void exit_set(VarSet& live) const;
     std::size_t find_target(const Stmt& s) const;
+    void note_across(const Stmt& s, const VarSet& live);
+    // Lanes that do not run a block with the others need `live` meanwhile.
+    void block_beside(const Block& b, VarSet& inside, const VarSet& live);
 
     const Program& program_;
     LiveMode mode_;
@@ -127,6 +138,10 @@ private:
     std::vector<Target> targets_;
     VarSet entry_;
     bool changed_ = false;
+    // LiveMode::Packets
+    const std::unordered_set<const Stmt*>* wait_ = nullptr;
+    Across across_;
+    VarSet elsewhere_; // read later by lanes that are not in the block at hand
 };
 
 } // namespace slc

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <new>
+#include <random>
 #include <set>
 
 namespace slc {
@@ -46,7 +49,9 @@ std::string Comparison::run(std::uint32_t num_points) {
     batch.begin(instance, num_points);
     Interpreter oracle(program_, world_, static_cast<int>(num_points));
     fill(batch, oracle, num_points);
-    if (batch.run({&services, &world_}) != 0) {
+    if (instance.shader().variant().frame_size > 0) {
+        shade_in_any_order(batch, services, instance.shader().variant());
+    } else if (batch.run({&services, &world_}) != 0) {
         return "suspended";
     }
     const std::vector<std::string> printed = world_.printed();
@@ -70,6 +75,38 @@ std::string Comparison::run(std::uint32_t num_points) {
                      std::to_string(world_.printed().size());
     }
     return difference;
+}
+
+// Packets of a shader that waits, one step of a packet picked at random after the other. Frames
+// hold rubbish at first, and nothing a packet left on the stack is there when it goes on.
+void Comparison::shade_in_any_order(rt::ShadeBatch& batch, const sl_services& services,
+                                    const sl_variant& variant) {
+    batch.bind({&services, &world_});
+    const auto lanes = static_cast<std::uint32_t>(variant.lanes);
+    const std::align_val_t alignment{variant.frame_align};
+    std::vector<std::uint32_t> waiting;
+    std::vector<sl_frame*> frames;
+    for (std::uint32_t packet = 0; packet < batch.num_packets(); ++packet) {
+        void* const memory = ::operator new(variant.frame_size, alignment);
+        std::memset(memory, 0xa5, variant.frame_size);
+        frames.push_back(static_cast<sl_frame*>(memory));
+        frames.back()->state = 0;
+        waiting.push_back(packet);
+    }
+    std::minstd_rand random(batch.count());
+    while (!waiting.empty()) {
+        const std::size_t i = random() % waiting.size();
+        const std::uint32_t first = waiting[i] * lanes;
+        sl_frame* const frame = frames[waiting[i]];
+        if (frame->state != 0) {
+            world_.answer(frame->rays);
+        }
+        const std::uint32_t count = std::min(lanes, batch.count() - first);
+        if (variant.shade(&batch.raw(), first, count, frame) == SL_DONE) {
+            ::operator delete(frame, alignment);
+            waiting.erase(waiting.begin() + static_cast<std::ptrdiff_t>(i));
+        }
+    }
 }
 
 void Comparison::fill(rt::ShadeBatch& batch, Interpreter& oracle, std::uint32_t n) {
@@ -96,6 +133,9 @@ void Comparison::fill(rt::ShadeBatch& batch, Interpreter& oracle, std::uint32_t 
         }
     }
     fill_differences(batch, oracle, n);
+    for (std::uint32_t i = 0; i < n; ++i) {
+        batch.seeds()[i] = world_.seed(static_cast<int>(i));
+    }
     // Varying parameters that are no outputs differ from point to point.
     for (std::size_t p = 0; p < program_.params.size(); ++p) {
         const Var& v = program_.vars[static_cast<std::size_t>(program_.params[p].var)];

@@ -19,6 +19,8 @@ public:
     [[nodiscard]] const std::string& text() const { return runner_.last_c; }
 
 private:
+    void shade_in_any_order(rt::ShadeBatch& batch, const sl_services& services,
+                            const sl_variant& variant);
     void fill(rt::ShadeBatch& batch, Interpreter& oracle, std::uint32_t n);
     void fill_differences(rt::ShadeBatch& batch, Interpreter& oracle, std::uint32_t n);
     [[nodiscard]] static std::string compare_lit(const rt::ShadeBatch& batch,

@@ -177,7 +177,99 @@ void serve_shadeop(void* engine, sl_string function, std::uint32_t, std::uint32_
     }
 }
 
+// Names of the numbers and texts of a ray query, by their slots.
+constexpr const char* ray_numbers[] = {
+#define SL_RAY_NUMBER(name, default, note) #name,
+#include "runtime/abi/sl_ray_options.def"
+};
+constexpr const char* ray_texts[] = {
+#define SL_RAY_TEXT(name, note) #name,
+#include "runtime/abi/sl_ray_options.def"
+};
+
+Triple3 triple_of(const float* planes, std::uint32_t lane, std::uint32_t lanes) {
+    return {planes[lane], planes[lanes + lane], planes[2 * lanes + lane]};
+}
+
+void put_triple(float* planes, std::uint32_t lane, std::uint32_t lanes, const Triple3& t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+        planes[k * lanes + lane] = static_cast<float>(t[k]);
+    }
+}
+
+RayQuestion question_of(const sl_ray_query& q, std::uint32_t lane) {
+    RayQuestion r;
+    const auto triple = [&](const float* planes) { return triple_of(planes, lane, q.lanes); };
+    r.kind = q.kind;
+    r.P = triple(q.P);
+    r.D = triple(q.D);
+    r.P_u = triple(q.P_u);
+    r.P_v = triple(q.P_v);
+    r.D_u = triple(q.D_u);
+    r.D_v = triple(q.D_v);
+    for (std::size_t i = 0; i < SL_RAY_OPTIONS; ++i) {
+        if ((q.given >> i & 1U) != 0) {
+            r.options[ray_numbers[i]] = Value(q.option[i][lane]);
+        }
+    }
+    for (std::size_t i = 0; i < SL_RAY_TEXTS; ++i) {
+        if (q.text[i] != nullptr) {
+            r.options[ray_texts[i]] = Value(std::string(q.text[i]));
+        }
+    }
+    return r;
+}
+
+void put_answer(sl_ray_query& q, std::uint32_t lane, const RayAnswer& a) {
+    q.hit |= a.hit ? 1U << lane : 0;
+    put_triple(q.C, lane, q.lanes, a.C);
+    put_triple(q.Phit, lane, q.lanes, a.Phit);
+    put_triple(q.Nhit, lane, q.lanes, a.Nhit);
+    put_triple(q.Pmiss, lane, q.lanes, a.Pmiss);
+    put_triple(q.Rmiss, lane, q.lanes, a.Rmiss);
+    q.distance[lane] = static_cast<float>(a.distance);
+    q.level_missed[lane] = static_cast<float>(a.level_missed);
+}
+
 } // namespace
+
+void OracleWorld::answer(sl_ray_query& query) {
+    for (std::uint32_t lane = 0; lane < query.lanes; ++lane) {
+        if ((query.mask >> lane & 1U) != 0) {
+            RayAnswer a;
+            rays(static_cast<int>(query.first + lane), question_of(query, lane), a);
+            put_answer(query, lane, a);
+        }
+    }
+}
+
+void OracleWorld::rays(int point, const RayQuestion& question, RayAnswer& answer) {
+    const RayQuestion& q = question;
+    double options = 0.25 * q.kind;
+    const auto is_known = [](const std::string& name) {
+        return std::ranges::find(ray_numbers, name) != std::end(ray_numbers) ||
+               std::ranges::find(ray_texts, name) != std::end(ray_texts);
+    };
+    for (const auto& [name, value] : q.options) {
+        if (!is_known(name)) {
+            continue;
+        }
+        options += value.type == Type::String ? 0.125 * static_cast<double>(value.text().size())
+                                              : 0.5 * std::tanh(value.f());
+    }
+    answer.hit = point % 3 != 2;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t n = (k + 1) % 3;
+        const double spread = q.P_u[k] + 0.5 * q.P_v[k] + 0.25 * q.D_u[k] + 0.125 * q.D_v[k];
+        answer.C[k] = 0.5 + 0.25 * std::sin(q.P[k] + 0.5 * q.D[n] + options) + 0.5 * spread;
+        answer.Phit[k] = q.P[k] + 0.5 * q.D[k];
+        answer.Nhit[k] = std::cos(q.D[k]);
+        answer.Pmiss[k] = q.P[n];
+        answer.Rmiss[k] = q.D[n] + 0.125;
+    }
+    answer.distance = 1 + 0.25 * std::tanh(q.P[0] + q.D[1]);
+    answer.level_missed = point % 3 == 2 ? 1 : point % 3;
+}
 
 sl_services OracleWorld::services() {
     sl_services s{};
@@ -216,6 +308,7 @@ sl_services OracleWorld::services() {
         return base::Pattern(pattern).matches(subject) ? 1 : 0;
     };
     s.shadeop = serve_shadeop;
+    s.rays = [](void* engine, sl_ray_query* query) { world_of(engine).answer(*query); };
     return s;
 }
 

@@ -19,6 +19,8 @@ public:
     explicit OracleWorld(rt::StringTable& strings) : strings_(strings) {}
 
     [[nodiscard]] static sl_services services(); // engine: the world
+    // Answers a question as the service `rays` does: for packets that wait.
+    void answer(sl_ray_query& query);
     // Lanes of the variant that runs: planes handed to services have that length.
     [[nodiscard]] std::uint32_t lanes() const { return lanes_; }
     void set_lanes(std::uint32_t lanes) { lanes_ = lanes; }
@@ -41,6 +43,8 @@ public:
     bool light(int index, int point, const Triple3& P, const Triple3& axis, double cos_angle,
                const std::string& category, LightSample& sample) override;
     Triple3 ambient(int point, const Triple3& P) override;
+    // Smooth in origin, direction, differences and options; about a third of the rays miss.
+    void rays(int point, const RayQuestion& question, RayAnswer& answer) override;
     bool space(const std::string& from, const std::string& to, int point, Matrix16& m) override;
     bool message(std::string_view function, const std::string& name, int point,
                  Value& value) override;

@@ -149,6 +149,7 @@ private:
 
     // --- built-ins and area operators (propagation_calls.cpp)
     void call(const Stmt& s);
+    void call_for_main(const Stmt& s, Stmt now);
     void function(const Stmt& s);
     bool set_component(const Stmt& s);
     void chain(const Stmt& s);
@@ -162,6 +163,7 @@ private:
     VarId area(const Stmt& s);
     VarId normal(const Stmt& s, Pair& d);
     VarId filter_step(const Stmt& s, Pair& d);
+    Stmt with_footprint(const Stmt& s);
     VarId map(const Stmt& s, Pair& d);
 
     Program& program_;

@@ -27,19 +27,27 @@ bool is_minmax(const BuiltinRow& row) {
 void Propagation::call(const Stmt& s) {
     switch (aux_rule(s)) {
     case AuxRule::Operator:
-        area_operator(s);
+        if (builtin_of(s).has(PropTraces)) {
+            call_for_main(s, with_footprint(s));
+        } else {
+            area_operator(s);
+        }
         return;
     case AuxRule::Function:
         function(s);
         return;
     case AuxRule::MainOnly:
-        break;
+        call_for_main(s, mapped(s));
+        return;
     }
-    // The same value for all points; where the main point is not, 0.
+}
+
+// The same value for all points; where the main point is not, 0. `now`: what `s` has become.
+void Propagation::call_for_main(const Stmt& s, Stmt now) {
     if (s.dst != no_var && main_here() != no_var && var(s.dst).type != Type::String) {
         emit(Op::Copy, current(s.dst), {zero(s.dst)});
     }
-    emit_for_main(mapped(s));
+    emit_for_main(std::move(now));
     for_each_write(s, [&](VarId id, bool whole) {
         if (whole) {
             set_differences(id, {no_var, no_var});
@@ -367,31 +375,53 @@ VarId Propagation::filter_step(const Stmt& s, Pair& d) {
 
 namespace {
 
-// What a map's operator becomes, and how many of its arguments have differences.
-struct MapForm {
+// What an operator with a footprint becomes, and how many of its arguments have differences.
+struct FootprintForm {
     std::string_view body, with_differences;
     std::size_t first, count; // coordinates among Stmt::args
     bool takes_st;            // they are the predefined s and t
 };
 
-constexpr MapForm map_forms[] = {{"texture_c", "texture_c_d", 2, 0, true},
-                                 {"texture_f", "texture_f_d", 2, 0, true},
-                                 {"texture_c_st", "texture_c_d", 2, 2, false},
-                                 {"texture_f_st", "texture_f_d", 2, 2, false},
-                                 {"environment_c", "environment_c_d", 2, 1, false},
-                                 {"environment_f", "environment_f_d", 2, 1, false},
-                                 {"shadow_c", "shadow_c_d", 2, 1, false},
-                                 {"shadow_f", "shadow_f_d", 2, 1, false},
-                                 {"bump", "bump_d", 5, 0, true},
-                                 {"bump_st", "bump_d", 5, 2, false}};
+constexpr FootprintForm footprint_forms[] = {{"texture_c", "texture_c_d", 2, 0, true},
+                                             {"texture_f", "texture_f_d", 2, 0, true},
+                                             {"texture_c_st", "texture_c_d", 2, 2, false},
+                                             {"texture_f_st", "texture_f_d", 2, 2, false},
+                                             {"environment_c", "environment_c_d", 2, 1, false},
+                                             {"environment_f", "environment_f_d", 2, 1, false},
+                                             {"shadow_c", "shadow_c_d", 2, 1, false},
+                                             {"shadow_f", "shadow_f_d", 2, 1, false},
+                                             {"bump", "bump_d", 5, 0, true},
+                                             {"bump_st", "bump_d", 5, 2, false},
+                                             {"trace_c", "trace_c_d", 0, 2, false},
+                                             {"fulltrace", "fulltrace_d", 0, 2, false}};
+
+const FootprintForm& footprint_form(const Stmt& s) {
+    return *std::find_if(std::begin(footprint_forms), std::end(footprint_forms),
+                         [&](const FootprintForm& f) { return f.body == builtin_of(s).body; });
+}
 
 } // namespace
 
+// Rays from the main point alone; the differences of their arguments are their footprint.
+Stmt Propagation::with_footprint(const Stmt& s) {
+    const FootprintForm& form = footprint_form(s);
+    Stmt m = mapped(s);
+    m.builtin = find_builtin_by_body(form.with_differences);
+    std::vector<VarId> differences;
+    for (std::size_t k = 0; k < 2; ++k) {
+        for (std::size_t i = 0; i < form.count; ++i) {
+            const Dual x = read(s.args[form.first + i]);
+            differences.push_back(x.d[k] == no_var ? zero(x.value) : x.d[k]);
+        }
+    }
+    m.args.insert(m.args.begin() + static_cast<std::ptrdiff_t>(form.first + form.count),
+                  differences.begin(), differences.end());
+    return m;
+}
+
 // A lookup with the footprint that the differences span; at the other points the same footprint.
 VarId Propagation::map(const Stmt& s, Pair& d) {
-    const auto* const form =
-        std::find_if(std::begin(map_forms), std::end(map_forms),
-                     [&](const MapForm& f) { return f.body == builtin_of(s).body; });
+    const FootprintForm* const form = &footprint_form(s);
     std::vector<Dual> a;
     for (const VarId id : s.args) {
         a.push_back(read(id));

@@ -8,23 +8,7 @@ static void report(const sl_call* call, const char* text) {
     call->services->report(call->engine, 0, text);
 }
 
-/* Outputs under the mask, and normals that a batch may lack. */
-static void slu_put_masked_3(const sl_call* call, slu3* to, slu3 a) {
-    (void)call;
-    *to = a;
-}
-static void slu_put_masked_f(const sl_call* call, float* to, float a) {
-    (void)call;
-    *to = a;
-}
-static void slv_put_masked_3(const sl_call* call, sli mask, slv* to, slv a) {
-    (void)call;
-    *to = slv_select_3(mask, a, *to);
-}
-static void slv_put_masked_f(const sl_call* call, sli mask, slf* to, slf a) {
-    (void)call;
-    *to = slv_select_f(mask, a, *to);
-}
+/* Normals that a batch may lack. */
 static slv slv_normal_at_(const sl_call* call, sli mask, int id) {
     (void)mask;
     if (!call->batch || !call->batch->main->var[id])

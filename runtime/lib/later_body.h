@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0
- * Functions of places without neighbours, and those that need rays, which come later; one text per
+ * Functions of places without neighbours, and of photon maps, which there are none of; one text per
  * world: each reports once per shader and returns its documented fallback
  * (reference/sl.md 4.2, 4.6).
  */
@@ -74,61 +74,8 @@ F FN(filterstep)(CALL, F edge, F x, const sl_value* values, int n) {
     return FN(step)(edge, x);
 }
 
-/* --- rays: nothing is hit
- * ----------------------------------------------------------------------------------------- */
+/* --- photon maps: there are none */
 
-#define NO_RAYS(name, result)                                                                      \
-    report(call, name "(): shaders trace no rays in this version; " result)
-
-V FN(trace_c)(CALL, V p, V r, const sl_value* values, int n) {
-    (void)p, (void)r, (void)values, (void)n;
-    NO_RAYS("trace", "the result is black");
-    return FN(f_to_3)(K(0));
-}
-F FN(trace_f)(CALL, V p, V r, const sl_value* values, int n) {
-    (void)p, (void)r, (void)values, (void)n;
-    NO_RAYS("trace", "the distance is 1e30");
-    return K(1e30f);
-}
-V FN(visibility)(CALL, V a, V b) {
-    (void)a, (void)b;
-    NO_RAYS("visibility", "the result is 1");
-    return FN(f_to_3)(K(1));
-}
-V FN(transmission)(CALL, V a, V b, const sl_value* values, int n) {
-    (void)a, (void)b, (void)values, (void)n;
-    NO_RAYS("transmission", "the result is 1");
-    return FN(f_to_3)(K(1));
-}
-F FN(rayhittest)(CALL, V p, V r, V* Ph, V* Nh) {
-    NO_RAYS("rayhittest", "the distance is 1e30");
-    FN(put_masked_3)(PASS, Ph, FN(add_3)(p, FN(scale_3)(r, K(1e30f))));
-    FN(put_masked_3)(PASS, Nh, FN(f_to_3)(K(0)));
-    return K(1e30f);
-}
-/* A ray that misses: the colour is 0, the distance very large, and this ray is the one that missed.
- */
-F FN(fulltrace)(CALL, V p, V r, V* hitcolor, F* hitdist, V* Phit, V* Nhit, V* Pmiss, V* Rmiss) {
-    NO_RAYS("fulltrace", "the ray misses");
-    const V zero = FN(f_to_3)(K(0));
-    FN(put_masked_3)(PASS, hitcolor, zero);
-    FN(put_masked_f)(PASS, hitdist, K(1e30f));
-    FN(put_masked_3)(PASS, Phit, zero);
-    FN(put_masked_3)(PASS, Nhit, zero);
-    FN(put_masked_3)(PASS, Pmiss, p);
-    FN(put_masked_3)(PASS, Rmiss, r);
-    return FN(raylevel)(PASS) + 1.0f;
-}
-F FN(occlusion)(CALL, V p, V n, F samples, const sl_value* values, int num) {
-    (void)p, (void)n, (void)samples, (void)values, (void)num;
-    NO_RAYS("occlusion", "the result is 0");
-    return K(0);
-}
-V FN(indirectdiffuse)(CALL, V p, V n, F samples, const sl_value* values, int num) {
-    (void)p, (void)n, (void)samples, (void)values, (void)num;
-    NO_RAYS("indirectdiffuse", "the result is black");
-    return FN(f_to_3)(K(0));
-}
 V FN(caustic)(CALL, V p, V n) {
     (void)p, (void)n;
     report(call, "caustic(): there are no photon maps; the result is black");

@@ -4,43 +4,8 @@
  * names are answered here and are no error.
  */
 #include "body.h"
+#include "pairs.h"
 
-static int is_named(sl_string name) {
-    return name && name[0];
-}
-
-static int same_text(const char* a, const char* b) {
-    while (*a && *a == *b)
-        a++, b++;
-    return *a == *b;
-}
-
-/* --- planes: a uniform value stands in all lanes, of which the first live one is asked */
-
-static uint32_t slu_asked_(const sl_call* call) {
-    return 1u << sl_first_lane(call->live);
-}
-static uint32_t slv_asked_(const sl_call* call, sli mask) {
-    (void)call;
-    return sl_bits(mask);
-}
-static void slv_put_plane_(float* plane, slf a) {
-    for (int i = 0; i < SL_LANES; i++)
-        plane[i] = a[i];
-}
-static void slu_put_plane_(float* plane, float a) {
-    slv_put_plane_(plane, slv_spread_f(a));
-}
-static slf slv_get_plane_(const sl_call* call, sli mask, const float* plane) {
-    (void)call, (void)mask;
-    slf r = {0};
-    for (int i = 0; i < SL_LANES; i++)
-        r[i] = plane[i];
-    return r;
-}
-static float slu_get_plane_(const sl_call* call, const float* plane) {
-    return plane[sl_first_lane(call->live)];
-}
 /* A predefined variable; 0 in batches without it (defaults of parameters). */
 static slf slv_global_f_(const sl_call* call, sli mask, int id) {
     (void)mask;
@@ -50,23 +15,11 @@ static float slu_global_f_(const sl_call* call, int id) {
     return slv_global_f_(call, call->live, id)[sl_first_lane(call->live)];
 }
 
-/* --- name/value pairs */
-
-static slf lanes_of(const sl_value* value) {
-    return value->varying ? *(const slf*)value->data : slv_spread_f(*(const float*)value->data);
-}
+/* --- options */
 
 static void set_option(sl_map_query* query, int slot, const sl_value* value) {
     query->given |= 1u << slot;
     slv_put_plane_(query->option[slot], lanes_of(value));
-}
-
-static int is_text(const sl_value* value) {
-    return value->type == SL_TYPE_string && !value->array_length;
-}
-
-static sl_string text_of(const sl_value* value) {
-    return value->varying ? ((const sls*)value->data)->s[0] : *(const sl_string*)value->data;
 }
 
 static void take_option(sl_map_query* query, sl_string name, const sl_value* value) {
@@ -115,10 +68,6 @@ static int channel_of(float channel) {
 /* --- textureinfo: the value is the same for all lanes */
 
 enum { INFO_FLOATS = 16 };
-
-static int components_of(int type) {
-    return type == SL_TYPE_float ? 1 : type == SL_TYPE_matrix ? 16 : 3;
-}
 
 static void put_info(sli mask, const sl_value* out, const float* values, int n) {
     for (int i = 0; i < n; i++) {
@@ -209,26 +158,6 @@ static int take_point_option(point_samples* p, sl_string name, const sl_value* v
         return p->query.radius_scale = first_number(value, p->query.mask), 1;
     return same_text(name, "interpolate") || value->type == SL_TYPE_string ||
            value->type == SL_TYPE_matrix || value->array_length;
-}
-
-static void load_channel(const sl_value* value, float* planes) {
-    for (int k = 0; k < components_of(value->type); k++)
-        slv_put_plane_(planes + k * SL_LANES, value->varying
-                                                  ? ((const slf*)value->data)[k]
-                                                  : slv_spread_f(((const float*)value->data)[k]));
-}
-
-static void store_channel(const sl_value* value, sli set, const float* planes) {
-    const sli all = sl_mask((1u << SL_LANES) - 1);
-    for (int k = 0; k < components_of(value->type); k++) {
-        const float* plane = planes + k * SL_LANES;
-        if (value->varying) {
-            slf* to = &((slf*)value->data)[k];
-            *to = slv_select_f(set, slv_get_plane_(0, all, plane), *to);
-        } else {
-            ((float*)value->data)[k] = plane[sl_first_lane(set)];
-        }
-    }
 }
 
 /* pair[k]: the value of channel k. */

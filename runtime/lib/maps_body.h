@@ -4,12 +4,6 @@
  * differences from the corners, an unordered quadrilateral of (u0v0) (u1v0) (u0v1) (u1v1).
  */
 
-static void FN(put_triple_)(float* planes, V a) {
-    FN(put_plane_)(planes, a.x);
-    FN(put_plane_)(planes + SL_LANES, a.y);
-    FN(put_plane_)(planes + 2 * SL_LANES, a.z);
-}
-
 static F FN(run_f_)(CALL, sl_map_query* query, const sl_value* values, int n) {
     float result[SL_LANES_MAX] = {0};
     take_options(query, values, n);
@@ -24,11 +18,7 @@ static V FN(run_3_)(CALL, sl_map_query* query, const sl_value* values, int n) {
     take_options(query, values, n);
     if (query->mask)
         call->services->map(call->engine, query, result);
-    V r;
-    r.x = FN(get_plane_)(PASS, result);
-    r.y = FN(get_plane_)(PASS, result + SL_LANES);
-    r.z = FN(get_plane_)(PASS, result + 2 * SL_LANES);
-    return r;
+    return FN(get_triple_)(PASS, result);
 }
 
 /* Mean of four corners, and what changes along u and v. */

@@ -116,6 +116,18 @@ V FN(phong)(CALL, V n, V v, F size) OUT(phong);
 V FN(specularbrdf)(CALL, V l, V n, V v, F roughness) OUT(specularbrdf);
 V FN(trace_c)(CALL, V p, V r, const sl_value* values, int n) OUT(trace_c);
 F FN(trace_f)(CALL, V p, V r, const sl_value* values, int n) OUT(trace_f);
+V FN(trace_c_d)(CALL, V p, V r, V p_u, V r_u, V p_v, V r_v, const sl_value* values, int n)
+    OUT(trace_c_d);
+F FN(fulltrace_d)(CALL, V p, V r, V p_u, V r_u, V p_v, V r_v, V* hitcolor, F* hitdist, V* Phit,
+                  V* Nhit, V* Pmiss, V* Rmiss) OUT(fulltrace_d);
+/* SL_WAITS: question and answer apart */
+void FN(trace_c_d_ask)(CALL, sl_ray_query* q, V p, V r, V p_u, V r_u, V p_v, V r_v,
+                       const sl_value* values, int n) OUT(trace_c_d_ask);
+V FN(trace_c_d_answer)(CALL, const sl_ray_query* q) OUT(trace_c_d_answer);
+void FN(fulltrace_d_ask)(CALL, sl_ray_query* q, V p, V r, V p_u, V r_u, V p_v, V r_v)
+    OUT(fulltrace_d_ask);
+F FN(fulltrace_d_answer)(CALL, const sl_ray_query* q, V* hitcolor, F* hitdist, V* Phit, V* Nhit,
+                         V* Pmiss, V* Rmiss) OUT(fulltrace_d_answer);
 V FN(visibility)(CALL, V a, V b) OUT(visibility);
 V FN(transmission)(CALL, V a, V b, const sl_value* values, int n) OUT(transmission);
 F FN(rayhittest)(CALL, V p, V r, V* Ph, V* Nh) OUT(rayhittest);

@@ -32,6 +32,12 @@ typedef struct sl_light_loop {
     slf nondiffuse, nonspecular; /* the light's __nondiffuse and __nonspecular */
 } sl_light_loop;
 
+/* What a loop goes on from after a suspension: all but the sample at hand, whose values the shader
+ * has in variables, and what is sent, which lies on the stack. */
+typedef struct sl_saved_lights {
+    _Alignas(slf) unsigned char bytes[__builtin_offsetof(sl_light_loop, L)];
+} sl_saved_lights;
+
 /* The next light sample that reaches any lane: 1 and the lanes reached; 0 when there is none left.
  */
 int sl_lights_next(const sl_call* call, sl_light_loop* loop, sli* lit) SL_SYMBOL(sl_lights_next);
@@ -67,6 +73,13 @@ SL_INLINE void sl_lights_begin(const sl_call* call, sl_light_loop* loop, sli mas
     loop->index = loop->sample = loop->refresh = loop->num_sends = 0;
     loop->sends = 0;
     loop->count = call->services->light_count(call->engine);
+}
+
+SL_INLINE void sl_lights_save(const sl_light_loop* loop, sl_saved_lights* saved) {
+    __builtin_memcpy(saved->bytes, loop, sizeof saved->bytes);
+}
+SL_INLINE void sl_lights_restore(sl_light_loop* loop, const sl_saved_lights* saved) {
+    __builtin_memcpy(loop, saved->bytes, sizeof saved->bytes);
 }
 
 /* Cosine of a cone's half angle as the cone tests use it: exactly 0 at pi/2, and everything passes

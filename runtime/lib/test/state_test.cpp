@@ -377,15 +377,15 @@ TEST_F(State, LaterRowsFallBackAndReportOnce) {
                              {"Deriv_3", 0, 1},
                              {"area", 0, 1},
                              {"area_strategy", 0, 1},
-                             {"trace_c", 0, 1},
-                             {"trace_f", 1e30f, 1},
-                             {"visibility", 1, 1},
-                             {"transmission", 1, 1},
-                             {"rayhittest", 1e30f, 1},
-                             {"occlusion", 0, 1},
+                             {"trace_c", 0, 0},
+                             {"trace_f", 1e30f, 0},
+                             {"visibility", 1, 0},
+                             {"transmission", 1, 0},
+                             {"rayhittest", 1e30f, 0},
+                             {"occlusion", 0, 0},
                              {"occlusion_map", 0, 1},
                              {"occlusion_map_2", 0, 1},
-                             {"indirectdiffuse", 0, 1},
+                             {"indirectdiffuse", 0, 0},
                              {"indirectdiffuse_map", 0, 1},
                              {"caustic", 0, 1},
                              {"photonmap", 0, 1},
@@ -430,7 +430,15 @@ TEST_F(State, LaterRowsFallBackAndReportOnce) {
 }
 
 TEST_F(State, AMissingRayMisses) {
-    engine.ray_level = 1;
+    engine.trace = [](sl_ray_query& query) {
+        for (std::uint32_t i = 0; i < 3 * query.lanes; ++i) {
+            query.Pmiss[i] = query.P[i];
+            query.Rmiss[i] = query.D[i];
+        }
+        for (std::uint32_t i = 0; i < query.lanes; ++i) {
+            query.level_missed[i] = 2;
+        }
+    };
     const Planes in = {{1}, {2}, {3}, {4}, {5}, {6}};
     const Planes got = run_all("fulltrace", in, 1, &batch.batch());
     EXPECT_EQ(got[0][0], 2); // the depth of the ray that missed

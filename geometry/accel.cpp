@@ -79,9 +79,11 @@ struct Accel::Impl {
         return true;
     }
 
-    void to_hit(const RTCRayHit8& q, int i, Hit& hit) const;
+    void to_hit(const RTCRay8& ray, int i, const embree::Crossing& met, Hit& hit) const;
     void refine(const embree::Geometry::Member& member, const Mat4* trace_from_cam,
-                const RTCRayHit8& q, int i, Hit& hit) const;
+                const RTCRay8& ray, int i, Hit& hit) const;
+    void to_crossings(const RTCRay8& rays, const embree::OcclusionContext::Ray* met,
+                      Crossings& out) const;
 };
 
 namespace {
@@ -205,42 +207,43 @@ void Accel::finish(std::span<const TraceItem> items) {
     rtcCommitScene(impl_->top.scene);
 }
 
-void Accel::Impl::to_hit(const RTCRayHit8& q, int i, Hit& hit) const {
+// What Embree names, in our names; t of a miss means nothing.
+void Accel::Impl::to_hit(const RTCRay8& ray, int i, const embree::Crossing& met, Hit& hit) const {
     hit = Hit{};
-    hit.time = q.ray.time[i];
-    if (q.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) {
+    hit.time = ray.time[i];
+    if (met.geometry == RTC_INVALID_GEOMETRY_ID) {
         return;
     }
     const embree::Level* level = &top;
     const Mat4* trace_from_cam = nullptr;
-    if (q.hit.instID[0][i] != RTC_INVALID_GEOMETRY_ID) {
-        const Placed& p = placed[q.hit.instID[0][i] - top.geometries.size()];
+    if (met.instance != RTC_INVALID_GEOMETRY_ID) {
+        const Placed& p = placed[met.instance - top.geometries.size()];
         level = &prototypes[p.prototype];
         trace_from_cam = &p.trace_from_cam;
         hit.instance = p.instance;
     }
-    const embree::Geometry& g = level->geometries[q.hit.geomID[i]];
-    const embree::Geometry::Member& member = g.member(q.hit.primID[i]);
+    const embree::Geometry& g = level->geometries[met.geometry];
+    const embree::Geometry::Member& member = g.member(met.part);
     hit.shape = member.shape;
-    hit.part = q.hit.primID[i] - member.first;
-    hit.u = q.hit.u[i];
-    hit.v = q.hit.v[i];
-    hit.t = q.ray.tfar[i];
+    hit.part = met.part - member.first;
+    hit.u = met.u;
+    hit.v = met.v;
+    hit.t = met.t;
     if (g.refine) {
-        refine(member, trace_from_cam, q, i, hit);
+        refine(member, trace_from_cam, ray, i, hit);
     }
 }
 
 void Accel::Impl::refine(const embree::Geometry::Member& member, const Mat4* trace_from_cam,
-                         const RTCRayHit8& q, int i, Hit& hit) const {
-    V3d o(q.ray.org_x[i], q.ray.org_y[i], q.ray.org_z[i]);
-    V3d d(q.ray.dir_x[i], q.ray.dir_y[i], q.ray.dir_z[i]);
+                         const RTCRay8& q, int i, Hit& hit) const {
+    V3d o(q.org_x[i], q.org_y[i], q.org_z[i]);
+    V3d d(q.dir_x[i], q.dir_y[i], q.dir_z[i]);
     if (trace_from_cam) {
         o = point(*trace_from_cam, o);
         d = vector(*trace_from_cam, d);
     }
     const ObjectRay ray{point(*member.object_from_trace, o), vector(*member.object_from_trace, d),
-                        q.ray.tnear[i], q.ray.tfar[i], 0};
+                        q.tnear[i], q.tfar[i], 0};
     LocalHit local{{hit.part, hit.u, hit.v}, hit.t};
     member.surface->refine(ray, local);
     hit.part = local.at.part;
@@ -248,6 +251,29 @@ void Accel::Impl::refine(const embree::Geometry::Member& member, const Mat4* tra
     hit.v = static_cast<float>(local.at.v);
     hit.t = static_cast<float>(local.t);
 }
+
+void Accel::Impl::to_crossings(const RTCRay8& rays, const embree::OcclusionContext::Ray* met,
+                               Crossings& out) const {
+    for (int i = 0; i < lanes; ++i) {
+        const embree::OcclusionContext::Ray& of_ray = met[i];
+        out.count[i] = 0;
+        out.more |= (of_ray.more ? 1u : 0u) << i;
+        for (std::uint32_t k = 0; k < of_ray.count; ++k) {
+            if (k == 0 || !of_ray.crossings[k].repeats(of_ray.crossings[k - 1])) {
+                to_hit(rays, i, of_ray.crossings[k], out.hits[i][out.count[i]++]);
+            }
+        }
+    }
+}
+
+namespace {
+
+embree::Crossing closest(const RTCRayHit8& q, int i) {
+    return {q.ray.tfar[i],   q.hit.u[i],         q.hit.v[i], q.hit.geomID[i],
+            q.hit.primID[i], q.hit.instID[0][i], false};
+}
+
+} // namespace
 
 void Accel::intersect(const RayPacket& rays, Hit* hits) const {
     alignas(32) int valid[lanes];
@@ -260,7 +286,7 @@ void Accel::intersect(const RayPacket& rays, Hit* hits) const {
         rtcIntersect8(valid, impl_->top.scene, &context, &q);
     }
     for (int i = 0; i < lanes; ++i) {
-        impl_->to_hit(q, i, hits[i]);
+        impl_->to_hit(q.ray, i, closest(q, i), hits[i]);
     }
 }
 
@@ -277,24 +303,31 @@ void Accel::intersect(std::span<const RayPacket> packets, Hit* hits) const {
             rtcIntersect8(valid, impl_->top.scene, &context, &q);
         }
         for (int i = 0; i < lanes; ++i) {
-            impl_->to_hit(q, i, *hits++);
+            impl_->to_hit(q.ray, i, closest(q, i), *hits++);
         }
     }
 }
 
-std::uint32_t Accel::occluded(const RayPacket& rays) const {
+std::uint32_t Accel::occluded(const RayPacket& rays, Crossings* crossings) const {
     alignas(32) int valid[lanes];
     RTCRay8 q;
-    RTCIntersectContext context;
+    embree::OcclusionContext context;
+    embree::OcclusionContext::Ray met[lanes];
     valid_rays(rays, impl_->ray_limit, valid);
     load_rays(rays, q);
-    rtcInitIntersectContext(&context);
+    rtcInitIntersectContext(&context.embree);
+    context.rays = crossings != nullptr ? met : nullptr;
     if (impl_->top.scene) {
-        rtcOccluded8(valid, impl_->top.scene, &context, &q);
+        rtcOccluded8(valid, impl_->top.scene, &context.embree, &q);
     }
     std::uint32_t bits = 0;
     for (int i = 0; i < lanes; ++i) {
         bits |= (valid[i] == -1 && q.tfar[i] < 0 ? 1u : 0u) << i;
+    }
+    if (crossings != nullptr) {
+        crossings->more = 0;
+        load_rays(rays, q); // tfar as asked
+        impl_->to_crossings(q, met, *crossings);
     }
     return bits;
 }
@@ -305,6 +338,7 @@ AccelStats Accel::stats() const {
     s.analytic = impl_->top.analytic;
     s.grids = impl_->top.grids;
     s.instances = impl_->placed.size();
+    s.filtering = impl_->top.filtering;
     s.flatness_px = impl_->top.flatness_px;
     s.embree_bytes =
         static_cast<std::uint64_t>(std::max<std::int64_t>(impl_->embree_bytes.load(), 0));
@@ -313,6 +347,7 @@ AccelStats Accel::stats() const {
         s.triangles += level.triangles;
         s.analytic += level.analytic;
         s.grids += level.grids;
+        s.filtering += level.filtering;
         s.bytes += level.bytes();
         s.flatness_px = std::max(s.flatness_px, level.flatness_px);
     }

@@ -25,6 +25,7 @@ struct TraceItem {
     Mat4 object_from_trace;
     std::uint32_t mask = 0; // RayMask
     int cull = 0;           // ObjectRay::cull
+    bool filters = false;   // lets part of the light through to shadow rays
     double flatness = 1;    // share of the level's flatness, at most 1
 };
 
@@ -36,6 +37,7 @@ struct LevelView {
 
 struct AccelStats {
     std::uint64_t triangles = 0, analytic = 0, grids = 0, instances = 0;
+    std::uint64_t filtering = 0; // surfaces that let part of the light through
     std::uint64_t bytes = 0;
     std::uint64_t embree_bytes = 0; // of them
     double flatness_px = 0; // what diced surfaces keep; more than asked for only to save memory
@@ -59,7 +61,8 @@ public:
 
     void intersect(const RayPacket& rays, Hit* hits) const;
     void intersect(std::span<const RayPacket> packets, Hit* hits) const;
-    [[nodiscard]] std::uint32_t occluded(const RayPacket& rays) const;
+    // crossings may be null.
+    [[nodiscard]] std::uint32_t occluded(const RayPacket& rays, Crossings* crossings) const;
 
     [[nodiscard]] AccelStats stats() const;
     // What Embree complained about, "" if nothing.

@@ -49,6 +49,7 @@ public:
     }
 
     void add(const TraceItem& item) {
+        level_.filtering += item.filters ? 1 : 0;
         switch (item.surface->trace_form()) {
         case TraceForm::Analytic:
             add_analytic(item);
@@ -72,7 +73,8 @@ public:
     }
 
 private:
-    using Key = std::tuple<TraceForm, std::uint32_t, int, bool>; // form, mask, culling, refine
+    // form, mask, culling, refine, filters
+    using Key = std::tuple<TraceForm, std::uint32_t, int, bool, bool>;
 
     RTCDevice device_;
     DiceContext dice_;
@@ -86,11 +88,13 @@ private:
         return c;
     }
 
-    Geometry& new_geometry(TraceForm form, std::uint32_t mask, int cull, bool refine) {
+    Geometry& new_geometry(const Key& key) {
+        const auto& [form, mask, cull, refine, filters] = key;
         Geometry& g = level_.geometries.emplace_back();
         g.form = form;
         g.cull_trace = cull;
         g.refine = refine;
+        g.filters = filters;
         masks_.push_back(mask);
         return g;
     }
@@ -103,9 +107,10 @@ private:
     }
 
     void add_analytic(const TraceItem& item) {
-        Geometry*& g = open_[{TraceForm::Analytic, item.mask, 0, false}];
+        const Key key{TraceForm::Analytic, item.mask, 0, false, item.filters};
+        Geometry*& g = open_[key];
         if (!g) {
-            g = &new_geometry(TraceForm::Analytic, item.mask, 0, false);
+            g = &new_geometry(key);
         }
         g->members.push_back({item.shape, static_cast<std::uint32_t>(g->members.size()),
                               item.surface, stored(item.object_from_trace), item.cull});
@@ -117,10 +122,11 @@ private:
         const int cull = trace_cull(item);
         const bool refine = item.surface->needs_refine();
         const bool small = item.surface->num_parts() < merge_below_parts;
+        const Key key{form, item.mask, cull, refine, item.filters};
         Geometry* alone = nullptr;
-        Geometry*& g = small ? open_[{form, item.mask, cull, refine}] : alone;
+        Geometry*& g = small ? open_[key] : alone;
         if (!g || g->member_of.size() > group_parts) {
-            g = &new_geometry(form, item.mask, cull, refine);
+            g = &new_geometry(key);
         }
         g->buffer.may_borrow = !small;
         const std::size_t first = num_parts(*g);
@@ -176,6 +182,9 @@ private:
                 b.borrowed.empty() ? b.triangles.data() : b.borrowed.data();
             rtcSetSharedGeometryBuffer(made, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, index, 0,
                                        12, num_parts(g));
+        }
+        if (g.filters) {
+            rtcSetGeometryOccludedFilterFunction(made, shadow_filter);
         }
         if (g.cull_trace != 0) {
             rtcSetGeometryIntersectFilterFunction(made, cull_filter);

@@ -28,7 +28,8 @@ struct Geometry {
         member_of;      // by primID; empty when there is one member, or one per primID
     int cull_trace = 0; // Triangles: sign of dot(Embree's Ng, direction) that is invisible
     bool refine = false;
-    TraceBuffer buffer; // what Embree reads stays here
+    bool filters = false; // TraceItem::filters
+    TraceBuffer buffer;   // what Embree reads stays here
 
     [[nodiscard]] const Member& member(std::uint32_t prim) const {
         return form == TraceForm::Analytic ? members[prim]
@@ -42,9 +43,32 @@ struct Level {
     std::deque<Geometry> geometries; // stable: Embree holds pointers
     std::deque<Mat4> matrices;
     std::uint64_t triangles = 0, analytic = 0, grids = 0;
+    std::uint64_t filtering = 0; // TraceItem::filters
     double flatness_px = 0;
 
     [[nodiscard]] std::uint64_t bytes() const;
+};
+
+// A place a shadow ray passes, as Embree names it.
+struct Crossing {
+    float t, u, v;
+    std::uint32_t geometry, part, instance;
+    bool leaves; // the surface's own normal goes along the ray
+
+    // What Embree tells twice: two parts that share the edge the ray goes through.
+    [[nodiscard]] bool repeats(const Crossing& before) const;
+};
+
+// Occlusion queries: Embree hands the context to callbacks.
+struct OcclusionContext {
+    RTCIntersectContext embree; // first
+    struct Ray {
+        std::uint32_t count = 0;
+        bool more = false;
+        Crossing crossings[Crossings::most]; // by t
+        void add(const Crossing& crossing);
+    };
+    Ray* rays = nullptr; // one per lane; null: nobody wants to know
 };
 
 // Creates the scene's geometries (uncommitted, so that instances can be added).
@@ -55,6 +79,7 @@ void build_level(RTCDevice device, const DiceContext& dice, std::span<const Trac
 void analytic_bounds(const RTCBoundsFunctionArguments* args);
 void analytic_intersect(const RTCIntersectFunctionNArguments* args);
 void analytic_occluded(const RTCOccludedFunctionNArguments* args);
+void shadow_filter(const RTCFilterFunctionNArguments* args);
 void cull_filter(const RTCFilterFunctionNArguments* args);
 
 } // namespace geo::embree

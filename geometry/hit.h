@@ -38,4 +38,21 @@ struct alignas(32) RayPacket {
 // What kind of ray sees which shapes (visibility attributes).
 enum RayMask : std::uint32_t { CameraRay = 1, ReflectionRay = 2, ShadowRay = 4 };
 
+// How a shape stops light that goes to a light source: Attribute "render" "casts_shadows".
+enum class ShadowMode : std::uint8_t {
+    None,
+    Opaque, // wholly
+    Os,     // by its opacity, attribute or primitive variable
+    Shader  // by what its surface shader says
+};
+
+// What shadow rays met that lets part of the light through, nearest first. Light passes all of it,
+// so a ray knows them together.
+struct Crossings {
+    static constexpr int most = 8;
+    Hit hits[RayPacket::size][most];
+    std::uint8_t count[RayPacket::size] = {};
+    std::uint32_t more = 0; // rays that met further ones behind their last
+};
+
 } // namespace geo

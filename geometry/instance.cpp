@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <compare>
 #include <map>
 #include <utility>
 
@@ -12,13 +13,27 @@ namespace {
 
 // What Embree must know about a member besides its shape: the same for all instances of a
 // prototype.
-using Signature = std::vector<std::pair<std::uint32_t, int>>;
+struct Facts {
+    std::uint32_t mask;
+    int cull;
+    bool filters;
+    friend auto operator<=>(const Facts&, const Facts&) = default;
+};
+using Signature = std::vector<Facts>;
+
+Facts facts(const ShapeTable& table, std::uint32_t shape, std::uint32_t instance) {
+    const std::uint32_t id = table.attribute_id(shape, instance);
+    const rib::Attributes& a = table.scene->attributes[id];
+    const ShadowMode mode = table.shadow_mode(table.shapes[shape], id);
+    const std::uint32_t unseen = mode == ShadowMode::None ? std::uint32_t{ShadowRay} : 0;
+    return {visibility_mask(a) & ~unseen, cull_side(a),
+            mode == ShadowMode::Os || mode == ShadowMode::Shader};
+}
 
 Signature signature(const ShapeTable& table, const ShapeGroup& group, std::uint32_t instance) {
     Signature s;
     for (std::uint32_t i = group.first_shape; i < group.first_shape + group.num_shapes; ++i) {
-        const rib::Attributes& a = table.scene->attributes[table.attribute_id(i, instance)];
-        s.emplace_back(visibility_mask(a), cull_side(a));
+        s.push_back(facts(table, i, instance));
     }
     return s;
 }
@@ -77,8 +92,10 @@ std::vector<TraceItem> trace_items(const ShapeTable& table, const ShapeGroup& gr
         item.surface = shape.surface.get();
         item.trace_from_object = trace_from_parent * placement.parent_from_object;
         item.object_from_trace = placement.object_from_parent * parent_from_trace;
-        item.mask = visibility_mask(a);
-        item.cull = cull_side(a);
+        const auto [mask, cull, filters] = facts(table, i, instance);
+        item.mask = mask;
+        item.cull = cull;
+        item.filters = filters && (mask & ShadowRay) != 0;
         item.flatness = flatness_share(a);
         if (item.mask != 0) {
             items.push_back(item);

@@ -35,6 +35,10 @@ public:
     std::size_t heap_bytes() const override;
     SurfacePoint evaluate(const LocalPoint& at) const override;
     LocalPoint step(const LocalPoint& at, double du, double dv) const override;
+    PartPlace place(std::uint32_t part, double s, double t) const override {
+        const SpanMap::Part &pu = part_u(part), &pv = part_v(part);
+        return {on_axes({part, s, t}), pu.t1 - pu.t0, pv.t1 - pv.t0};
+    }
     std::array<double, 2> max_step() const override {
         return {data_.range.u1 - data_.range.u0, data_.range.v1 - data_.range.v0};
     }

@@ -114,6 +114,10 @@ public:
                normals_.capacity() * sizeof(V3f);
     }
     [[nodiscard]] SurfacePoint evaluate(const LocalPoint& at) const override;
+    [[nodiscard]] bool corners(std::uint32_t part, std::array<V3d, 3>& out) const override {
+        out = corners(triangle(part)).p;
+        return true;
+    }
     [[nodiscard]] LocalPoint step(const LocalPoint& at, double du, double dv) const override;
     [[nodiscard]] SurfacePoint difference(const LocalPoint& at, const SurfacePoint& here, double du,
                                           double dv) const override;

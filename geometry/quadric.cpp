@@ -58,6 +58,9 @@ public:
         arc_ = {radius, phi0, phi1 - phi0};
     }
     [[nodiscard]] bool is_empty() const { return arc_.dphi == 0; }
+    [[nodiscard]] double whole_sphere() const override {
+        return is_whole_turn() && std::fabs(arc_.dphi) >= std::numbers::pi ? std::fabs(radius_) : 0;
+    }
 
     // The box of the whole ellipsoid is tighter than its rings' when rotated; both hold the
     // surface.

@@ -25,6 +25,10 @@ V3d turned(const V3d& p) {
 Revolution::Revolution(double thetamax_deg)
     : thetamax_(std::clamp(thetamax_deg, -360.0, 360.0) * std::numbers::pi / 180) {}
 
+bool Revolution::is_whole_turn() const {
+    return std::fabs(thetamax_) >= two_pi;
+}
+
 // A ring's extent along an axis is its radius times the length of the transform's part that acts
 // on its plane, per axis.
 Box Revolution::bound(const Mat4& dst_from_object) const {

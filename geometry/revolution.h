@@ -44,6 +44,7 @@ protected:
 
     // Clamped to a whole turn.
     explicit Revolution(double thetamax_deg);
+    [[nodiscard]] bool is_whole_turn() const;
 
     [[nodiscard]] virtual Generator generator(double v) const = 0;
     // generator(v + dv).p - generator(v).p, without cancellation.

@@ -456,6 +456,17 @@ V3d absolute(const V3d& v) {
     return {std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)};
 }
 
+// P + n offset, rounded away from P.
+V3f moved(const V3d& P, const V3d& n, double offset) {
+    V3f result(P + n * offset);
+    for (int k = 0; k < 3; ++k) {
+        if (n[k] != 0) {
+            result[k] = std::nextafter(result[k], n[k] * offset > 0 ? INFINITY : -INFINITY);
+        }
+    }
+    return result;
+}
+
 } // namespace
 
 void fill_points(const ShapeTable& table, const FillRequest& request) {
@@ -514,7 +525,7 @@ void fill_variable_differences(const ShapeTable& table, std::span<const Hit> hit
 // vertices and the rounding of these (4 and 1 of their reach, by the measurements in the tests),
 // the ray's way into an instance (8: float matrix, its float inverse, origin). Then along the
 // normal, and away by one ulp. [pbrt4] 6.8.6
-V3f spawn_point(const ShapeTable& table, const Hit& hit, const V3f& direction) {
+SpawnPoint spawn_points(const ShapeTable& table, const Hit& hit) {
     const Shape& shape = table.shapes[hit.shape];
     const LocalPoint at{hit.part, hit.u, hit.v};
     const SurfacePoint here = shape.surface->evaluate(at);
@@ -538,20 +549,10 @@ V3f spawn_point(const ShapeTable& table, const Hit& hit, const V3f& direction) {
     }
     bound = bound * float_eps;
 
-    V3d n = normalize(table.cam_normal(hit, error.facet_normal));
-    if (dot(n, V3d(direction)) < 0) {
-        n = -n;
-    }
+    const V3d n = normalize(table.cam_normal(hit, error.facet_normal));
     const double stretch = base::length(table.cam_vector(hit, normalize(error.facet_normal)));
     const double offset = dot(bound, absolute(n)) + error.deviation * stretch;
-    const V3d from = P + n * offset;
-    V3f result(from);
-    for (int k = 0; k < 3; ++k) {
-        if (n[k] != 0) {
-            result[k] = std::nextafter(result[k], n[k] > 0 ? INFINITY : -INFINITY);
-        }
-    }
-    return result;
+    return {V3f(n), moved(P, n, offset), moved(P, n, -offset)};
 }
 
 } // namespace geo

@@ -32,6 +32,6 @@ void fill_variable_differences(const ShapeTable& table, std::span<const Hit> hit
                                const rib::Param& param, const AuxiliaryPlanes& planes);
 
 // See World::spawn_origin.
-[[nodiscard]] V3f spawn_point(const ShapeTable& table, const Hit& hit, const V3f& direction);
+[[nodiscard]] SpawnPoint spawn_points(const ShapeTable& table, const Hit& hit);
 
 } // namespace geo

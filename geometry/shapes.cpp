@@ -7,6 +7,8 @@
 
 #include <cmath>
 #include <map>
+#include <string_view>
+#include <utility>
 
 namespace geo {
 
@@ -40,6 +42,7 @@ public:
     }
 
     ShapeTable run() {
+        find_shadow_modes();
         const Mat4 cam_from_world = scene_.camera_from_world.at(options_.time);
         table_.world = add_group(scene_.primitives, no_id, cam_from_world);
         for (std::uint32_t i = 0; i < scene_.objects.size(); ++i) {
@@ -61,6 +64,17 @@ private:
     // Strips of exporters hold them by the thousand: told once.
     std::size_t degenerate_ = 0;
     base::SourcePos first_degenerate_;
+
+    void find_shadow_modes() {
+        table_.shadow_modes.reserve(scene_.attributes.size());
+        for (std::size_t i = 0; i < scene_.attributes.size(); ++i) {
+            const ShadowMode mode = geo::shadow_mode(scene_.attributes[i]);
+            const bool is_shaded =
+                i >= options_.shades_opacity.size() || options_.shades_opacity[i];
+            table_.shadow_modes.push_back(mode == ShadowMode::Shader && !is_shaded ? ShadowMode::Os
+                                                                                   : mode);
+        }
+    }
 
     void report_degenerate() {
         if (degenerate_ > 0) {
@@ -304,6 +318,18 @@ std::uint32_t ShapeTable::transform_key(const Hit& hit) const {
     return instances[hit.instance].first_key + s.placement - objects[s.object].first_placement;
 }
 
+ShadowMode ShapeTable::shadow_mode(const Shape& shape, std::uint32_t attributes) const {
+    const ShadowMode mode = shadow_modes[attributes];
+    if (mode != ShadowMode::Os || shape.vars.Os != nullptr) {
+        return mode;
+    }
+    const auto all = [&](float value) {
+        const auto& os = scene->attributes[attributes].opacity;
+        return os[0] == value && os[1] == value && os[2] == value;
+    };
+    return all(1) ? ShadowMode::Opaque : all(0) ? ShadowMode::None : mode;
+}
+
 V3d ShapeTable::cam_point(const Hit& hit, const V3d& P_object) const {
     const V3d p = point(placements[shapes[hit.shape].placement].parent_from_object, P_object);
     return hit.instance == no_id
@@ -352,9 +378,24 @@ std::optional<int> number(const rib::Attributes& attributes, const char* name) {
     return std::nullopt;
 }
 
-bool text_is(const rib::Attributes& attributes, const char* name, const char* text) {
+std::optional<std::string_view> text(const rib::Attributes& attributes, const char* name) {
     const rib::Param* p = attributes.find(name);
-    return p && !p->strings.empty() && p->strings.front() == text;
+    return p && !p->strings.empty() ? std::optional<std::string_view>(p->strings.front())
+                                    : std::nullopt;
+}
+
+// The words of BMRT and those of PRMan.
+std::optional<ShadowMode> shadow_mode_of(std::string_view word) {
+    static constexpr std::pair<std::string_view, ShadowMode> words[] = {
+        {"none", ShadowMode::None},     {"transparent", ShadowMode::None},
+        {"opaque", ShadowMode::Opaque}, {"Os", ShadowMode::Os},
+        {"shader", ShadowMode::Shader}, {"shade", ShadowMode::Shader}};
+    for (const auto& [name, mode] : words) {
+        if (name == word) {
+            return mode;
+        }
+    }
+    return std::nullopt;
 }
 
 } // namespace
@@ -389,11 +430,25 @@ std::uint32_t visibility_mask(const rib::Attributes& attributes) {
     if (const auto on = number(attributes, "visibility:transmission")) {
         mask = set(mask, ShadowRay, *on != 0);
     }
-    if (text_is(attributes, "visibility:transmission", "transparent") ||
-        text_is(attributes, "render:casts_shadows", "none")) {
-        mask = set(mask, ShadowRay, false);
+    return shadow_mode(attributes) == ShadowMode::None ? set(mask, ShadowRay, false) : mask;
+}
+
+// The newest attribute that says something known, by age of the renderers that had it.
+ShadowMode shadow_mode(const rib::Attributes& attributes) {
+    if (attributes.user.empty()) {
+        return ShadowMode::Os;
     }
-    return mask;
+    if (const auto mode = text(attributes, "shade:transmissionhitmode")) {
+        return *mode == "shader" ? ShadowMode::Shader : ShadowMode::Os;
+    }
+    for (const char* name :
+         {"visibility:transmission", "render:casts_shadows", "radiosity:casts_shadows"}) {
+        const auto word = text(attributes, name);
+        if (const auto mode = word ? shadow_mode_of(*word) : std::nullopt) {
+            return *mode;
+        }
+    }
+    return ShadowMode::Os;
 }
 
 int cull_side(const rib::Attributes& attributes) {

@@ -34,6 +34,9 @@ struct Shape {
     StandardVars vars;
 };
 
+// How much light a shape lets pass to shadow rays, by its attributes (ri.md 14.3).
+[[nodiscard]] ShadowMode shadow_mode(const rib::Attributes& attributes);
+
 // The shapes and placements of one rib::Object, or of the world.
 struct ShapeGroup {
     std::uint32_t first_shape = 0, num_shapes = 0;
@@ -55,6 +58,10 @@ struct ShapeTable {
     ShapeGroup world;
     std::vector<ShapeGroup> objects;       // as Scene::objects
     std::vector<InstanceRecord> instances; // as Scene::instances
+    std::vector<ShadowMode> shadow_modes;  // by attribute state; shapes() decide with their own Os
+
+    // Of a shape with these attributes: Os and Shader only where they can let light through.
+    [[nodiscard]] ShadowMode shadow_mode(const Shape& shape, std::uint32_t attributes) const;
 
     [[nodiscard]] const rib::Attributes& attributes(const Hit& hit) const {
         return scene->attributes[attribute_id(hit.shape, hit.instance)];

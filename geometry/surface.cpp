@@ -79,6 +79,10 @@ TraceError Surface::trace_error(const LocalPoint&, const SurfacePoint& here) con
     return {here.Ng, {}, 0};
 }
 
+bool Surface::corners(std::uint32_t, std::array<V3d, 3>&) const {
+    return false;
+}
+
 LocalPoint Surface::step(const LocalPoint& at, double du, double dv) const {
     return {at.part, at.u + du, at.v + dv};
 }

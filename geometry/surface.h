@@ -133,6 +133,12 @@ struct TraceError {
     double deviation = 0; // distance between what is traced and the true surface, object units
 };
 
+// A place on a part by numbers of [0,1]^2, and how fast the surface parameters go with them.
+struct PartPlace {
+    LocalPoint at;
+    double du_ds = 1, dv_dt = 1;
+};
+
 struct ParamRange {
     double u0 = 0, u1 = 1, v0 = 0, v1 = 1;
 };
@@ -180,6 +186,16 @@ public:
     [[nodiscard]] virtual ParamRange range() const { return {}; }
     // Whether TextureCoordinates give s, t (ri.md 11.1); otherwise s = object x, t = object y.
     [[nodiscard]] virtual bool inherits_texture_coordinates() const { return true; }
+
+    // --- choosing points (area_set.h)
+    // The corners of a part that is a flat triangle, in the order of its barycentric coordinates.
+    [[nodiscard]] virtual bool corners(std::uint32_t part, std::array<V3d, 3>& out) const;
+    // Radius, if the surface is a whole sphere about the origin; else 0.
+    [[nodiscard]] virtual double whole_sphere() const { return 0; }
+    // Other parts. Default: local parameters are surface parameters of the range 0..1.
+    [[nodiscard]] virtual PartPlace place(std::uint32_t part, double s, double t) const {
+        return {{part, s, t}, 1, 1};
+    }
 
     // --- primitive variables
     // Items the class must have for this surface (ri.md 10.3).

@@ -3,6 +3,7 @@
 #include "geometry/world.h"
 
 #include "geometry/accel.h"
+#include "geometry/area_set.h"
 #include "geometry/instance.h"
 #include "geometry/shade_point.h"
 #include "geometry/shapes.h"
@@ -41,7 +42,16 @@ public:
         accel_.intersect(packets, hits);
     }
     [[nodiscard]] std::uint32_t occluded(const RayPacket& rays) const override {
-        return accel_.occluded(rays);
+        return accel_.occluded(rays, nullptr);
+    }
+    [[nodiscard]] std::uint32_t occluded(const RayPacket& rays,
+                                         Crossings& crossings) const override {
+        return accel_.occluded(rays, &crossings);
+    }
+    [[nodiscard]] bool filters_light() const override { return filters_light_; }
+    [[nodiscard]] ShadowMode shadow_mode(const Hit& hit) const override {
+        return table_.shadow_mode(table_.shapes[hit.shape],
+                                  table_.attribute_id(hit.shape, hit.instance));
     }
 
     [[nodiscard]] Binding binding(const Hit& hit) const override {
@@ -84,7 +94,14 @@ public:
     }
 
     [[nodiscard]] V3f spawn_origin(const Hit& hit, const V3f& direction) const override {
-        return spawn_point(table_, hit, direction);
+        return spawn_points(table_, hit).towards(direction);
+    }
+    [[nodiscard]] SpawnPoint spawn(const Hit& hit) const override {
+        return spawn_points(table_, hit);
+    }
+    [[nodiscard]] std::unique_ptr<const AreaSet>
+    area_set(std::span<const std::uint32_t> primitives) const override {
+        return make_area_set(table_, primitives);
     }
     [[nodiscard]] Mat4 camera_from_object(const Hit& hit, float) const override {
         return table_.cam_from_object(hit);
@@ -95,10 +112,12 @@ private:
     BuildOptions options_;
     ShapeTable table_;
     Accel accel_;
+    bool filters_light_ = false;
     Stats stats_;
 
     void count(double seconds) {
         const AccelStats a = accel_.stats();
+        filters_light_ = a.filtering > 0;
         stats_.shapes = table_.shapes.size();
         stats_.triangles = a.triangles;
         stats_.quadrics = a.analytic;
@@ -116,6 +135,22 @@ private:
 };
 
 } // namespace
+
+World::~World() = default;
+
+std::uint32_t World::occluded(const RayPacket& rays, Crossings& crossings) const {
+    crossings = {};
+    return occluded(rays);
+}
+
+SpawnPoint World::spawn(const Hit& hit) const {
+    const V3f along(0, 0, 1);
+    return {along, spawn_origin(hit, along), spawn_origin(hit, -along)};
+}
+
+std::unique_ptr<const AreaSet> World::area_set(std::span<const std::uint32_t>) const {
+    return nullptr;
+}
 
 std::unique_ptr<World> World::build(const rib::Scene& scene, const BuildOptions& options,
                                     base::Diag& diag) {

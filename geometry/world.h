@@ -18,6 +18,7 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <vector>
 
 namespace geo {
 
@@ -35,6 +36,8 @@ struct BuildOptions {
     View view;
     float time = 0;      // where still pictures of moving things are taken: shutter open
     int num_threads = 0; // 0: all
+    // By attribute state: the surface shader may change the opacity. Empty: all may.
+    std::vector<bool> shades_opacity;
 };
 
 // What a surface point belongs to, besides its position.
@@ -74,12 +77,23 @@ struct AuxiliaryPlanes {
     float *out_u, *out_v;
 };
 
+// Where rays that leave a hit may start: to either side of the surface, outside its rounding error.
+struct SpawnPoint {
+    base::V3f normal; // of what is traced there, unit
+    base::V3f front, back;
+    [[nodiscard]] const base::V3f& towards(const base::V3f& direction) const {
+        return base::dot(normal, direction) < 0 ? back : front;
+    }
+};
+
+class AreaSet;
+
 class World {
 public:
     // Reports degenerate geometry and leaves it out. scene must outlive the World.
     static std::unique_ptr<World> build(const rib::Scene& scene, const BuildOptions& options,
                                         base::Diag& diag);
-    virtual ~World() = default;
+    virtual ~World();
 
     // Closest hit per active ray; hits[i].shape = no_id where nothing was hit. Sides, visibility
     // bits applied.
@@ -87,8 +101,15 @@ public:
     // The same for any number of rays that lie near each other (a bucket of camera rays); fastest
     // path.
     virtual void intersect(std::span<const RayPacket> packets, Hit* hits) const = 0;
-    // Bit i: something opaque lies on ray i between tnear and tfar.
+    // Bit i: something opaque lies on ray i between tnear and tfar. To shadow rays, what lets part
+    // of the light through is not opaque; to others it is.
     [[nodiscard]] virtual std::uint32_t occluded(const RayPacket& rays) const = 0;
+    // The same for shadow rays, with all that lets part of the light through, up to
+    // Crossings::most per ray. What they hold of blocked rays means nothing.
+    [[nodiscard]] virtual std::uint32_t occluded(const RayPacket& rays, Crossings& crossings) const;
+    // Some shape lets part of the light through: else occluded(rays) says all.
+    [[nodiscard]] virtual bool filters_light() const { return false; }
+    [[nodiscard]] virtual ShadowMode shadow_mode(const Hit&) const { return ShadowMode::Opaque; }
 
     [[nodiscard]] virtual Binding binding(const Hit& hit) const = 0;
 
@@ -116,6 +137,14 @@ public:
     // towards direction by a bound of the rounding errors of P. [pbrt4] 6.8; no global epsilon.
     [[nodiscard]] virtual base::V3f spawn_origin(const Hit& hit,
                                                  const base::V3f& direction) const = 0;
+
+    // The same for all directions.
+    [[nodiscard]] virtual SpawnPoint spawn(const Hit& hit) const;
+
+    // The surfaces of these primitives of the scene as one set to choose points from; null where
+    // none has an area.
+    [[nodiscard]] virtual std::unique_ptr<const AreaSet>
+    area_set(std::span<const std::uint32_t> primitives) const;
 
     // Object space of a hit, at a time: for named coordinate systems.
     [[nodiscard]] virtual base::Mat4 camera_from_object(const Hit& hit, float time) const = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/execution.h"
 
-#include "tracer/lights.h"
+#include "tracer/light_run.h"
 #include "tracer/pattern_cache.h"
 #include "tracer/ray_levels.h"
 #include "tracer/shade_job.h"

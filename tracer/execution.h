@@ -32,6 +32,7 @@ struct ShaderEntry;
 class ShaderSet;
 class LightSet;
 class LightRun;
+struct LightScratch;
 class PatternCache;
 struct LightList;
 class PixelTrace;
@@ -81,16 +82,16 @@ struct ThreadState {
     ~ThreadState();
 
     Counters counters;
-    std::unique_ptr<ShadeJobs> jobs;               // what batches are shaded in
-    std::unique_ptr<RayLevels> levels;             // who shades what rays of shaders meet
-    std::unique_ptr<PatternCache> patterns;        // of match()
-    std::vector<ShadeopItem> shadeops;             // functions of DSOs that were called
-    std::vector<std::unique_ptr<LightRun>> lights; // by light, made on first use
-    std::uint64_t batch_serial = 0;                // grows with every run of a shader on a batch
-    std::string printed;                           // printf of the bucket in work
-    PixelTrace* trace = nullptr;                   // --trace-pixel: told what happens
-    ShaderProfile* profile = nullptr;              // --profile-shaders: this thread's rows
-    BadValues bad;                                 // results that were no numbers
+    std::unique_ptr<ShadeJobs> jobs;        // what batches are shaded in
+    std::unique_ptr<RayLevels> levels;      // who shades what rays of shaders meet
+    std::unique_ptr<PatternCache> patterns; // of match()
+    std::vector<ShadeopItem> shadeops;      // functions of DSOs that were called
+    std::unique_ptr<LightScratch> lights;   // light_run.h, made on first use
+    std::uint64_t batch_serial = 0;         // grows with every run of a shader on a batch
+    std::string printed;                    // printf of the bucket in work
+    PixelTrace* trace = nullptr;            // --trace-pixel: told what happens
+    ShaderProfile* profile = nullptr;       // --profile-shaders: this thread's rows
+    BadValues bad;                          // results that were no numbers
     bool is_abandoned = false; // a shader was interrupted: what is in work is worth nothing
 };
 
@@ -143,6 +144,8 @@ public:
     std::uint32_t asked_first = 0;       // the index there of its first point,
     std::uint32_t asked_mask = 0;        // and the lanes that were asked
     std::uint64_t serial = 0;            // of this run: what lights found for others is told by it
+    LightRun* light = nullptr;           // a light's: its working memory,
+    std::int32_t light_sample = 0;       // and the sample it is asked for
     int ray_level = 0;
     int ray_kind = SL_RAY_camera;
     SpaceCache spaces;

@@ -85,15 +85,18 @@ public:
             const PhaseTimer timer(tools.stats, Phase::shaders);
             shaders_ = std::make_unique<ShaderSet>(
                 ShaderSources{scene, spaces_, tools.library, tools.strings, tools.diag});
-            lights_ = std::make_unique<LightSet>(scene, *shaders_, tools.diag);
+            lights_ = std::make_unique<LightSet>(scene, *shaders_);
             classes_ = std::make_unique<ShadingClasses>(scene, *shaders_, *lights_);
             outputs_ = OutputSet(displays, scene.options, shader_outputs(*classes_), tools.diag);
             bindings_ = OutputBindings(outputs_, *classes_, tools.diag);
         }
         const PhaseTimer timer(tools.stats, Phase::geometry);
-        world_ = geo::World::build(
-            scene, {camera_.view(), scene.options.shutter_open, settings.num_threads}, tools.diag);
+        world_ = geo::World::build(scene,
+                                   {camera_.view(), scene.options.shutter_open,
+                                    settings.num_threads, shaded_opacity(scene, *shaders_)},
+                                   tools.diag);
         add_world_stats();
+        lights_->take_world(context());
     }
 
     [[nodiscard]] const Camera& camera() const { return camera_; }

@@ -296,8 +296,19 @@ void PixelTrace::ambient(rib::LightId id, rt::ShadeBatch& batch, std::uint32_t f
     }
 }
 
-void PixelTrace::shadow_rays(std::uint32_t first, const geo::RayPacket& rays,
-                             std::uint32_t blocked) {
+// The first thing a shadow ray meets, whatever becomes of the light there.
+std::string PixelTrace::first_on(const geo::RayPacket& rays, std::uint32_t lane) const {
+    geo::RayPacket one = rays;
+    one.active = 1U << lane;
+    geo::Hit hits[geo::RayPacket::size];
+    frame_.world->intersect(one, hits);
+    if (!hits[lane].valid()) {
+        return "";
+    }
+    return " by " + primitive_title(hits[lane]) + " at t " + number_text(hits[lane].t);
+}
+
+void PixelTrace::shadow_rays(std::uint32_t first, const geo::RayPacket& rays, const float* passes) {
     for (std::uint32_t rest = rays.active; rest != 0; rest &= rest - 1) {
         const auto lane = static_cast<std::uint32_t>(std::countr_zero(rest));
         SampleText* s = of_point(first + lane);
@@ -306,10 +317,16 @@ void PixelTrace::shadow_rays(std::uint32_t first, const geo::RayPacket& rays,
         }
         const float origin[] = {rays.ox[lane], rays.oy[lane], rays.oz[lane]};
         const float direction[] = {rays.dx[lane], rays.dy[lane], rays.dz[lane]};
+        const float left[] = {passes[lane], passes[8 + lane], passes[16 + lane]};
+        const bool is_open = left[0] == 1 && left[1] == 1 && left[2] == 1;
+        const bool is_blocked = left[0] == 0 && left[1] == 0 && left[2] == 0;
         line(s->text, at_shader,
              "shadow ray from " + numbers_text(origin) + " along " + numbers_text(direction) +
                  ", t 0 to " + number_text(rays.tfar[lane]) + ": " +
-                 ((blocked >> lane & 1U) != 0 ? "blocked" : "open"));
+                 (is_open ? "open"
+                  : is_blocked
+                      ? "blocked" + first_on(rays, lane)
+                      : "filtered to " + numbers_text(left) + ", first" + first_on(rays, lane)));
     }
 }
 

@@ -40,7 +40,8 @@ public:
     void light(rib::LightId id, rt::ShadeBatch& batch, const sl_light_query& query,
                const sl_light_result& result, std::uint32_t reached, std::uint32_t shadowed);
     void ambient(rib::LightId id, rt::ShadeBatch& batch, std::uint32_t first, std::uint32_t mask);
-    void shadow_rays(std::uint32_t first, const geo::RayPacket& rays, std::uint32_t blocked);
+    // passes: 3 planes of 8, the light that is left.
+    void shadow_rays(std::uint32_t first, const geo::RayPacket& rays, const float* passes);
     // printf of a point, or of uniform values in a packet.
     void printed(std::uint32_t point, std::string_view text);
     void printed_uniform(std::uint32_t first, std::uint32_t lanes, std::string_view text);
@@ -70,6 +71,7 @@ private:
     void tell_light(SampleText& to, rib::LightId id, rt::ShadeBatch& batch, std::uint32_t lane,
                     const std::string& result);
     [[nodiscard]] std::string place(base::SourcePos pos) const;
+    [[nodiscard]] std::string first_on(const geo::RayPacket& rays, std::uint32_t lane) const;
     [[nodiscard]] std::string primitive_title(const geo::Hit& hit) const;
     void append_filter(const Sampler& sampler, const FilterWeights& weights);
 

@@ -6,7 +6,7 @@
 #pragma once
 
 #include "tracer/hit_shader.h"
-#include "tracer/lights.h"
+#include "tracer/light_run.h"
 #include "tracer/ray_layers.h"
 #include "tracer/ray_wave.h"
 
@@ -36,7 +36,7 @@ private:
         HitShader shader;
         RayLayers layers;
         RayWave wave;
-        std::vector<std::unique_ptr<LightRun>> lights; // while a shader above runs
+        std::unique_ptr<LightScratch> lights; // while a shader above runs
     };
     [[nodiscard]] Level& enter();
     void leave() { --depth_; }

@@ -3,6 +3,7 @@
 
 #include "tracer/execution.h"
 #include "tracer/ray_levels.h"
+#include "tracer/transmission.h"
 
 #include <algorithm>
 #include <bit>
@@ -43,6 +44,10 @@ void answer_rays(Execution& execution, sl_ray_query& query) {
         return;
     }
     switch (query.kind) {
+    case SL_RAYS_transmission:
+    case SL_RAYS_shadow:
+        answer_transmission(execution, query);
+        return;
     case SL_RAYS_trace:
     case SL_RAYS_fulltrace:
     case SL_RAYS_hittest:
@@ -52,7 +57,7 @@ void answer_rays(Execution& execution, sl_ray_query& query) {
         deeper.wave().answer({&ask, 1});
         return;
     }
-    default: // transmission, occlusion and their like are answered elsewhere: nothing is in the way
+    default: // occlusion and its like are answered elsewhere: nothing is in the way
         miss_all(execution, query);
     }
 }

@@ -160,7 +160,7 @@ int main() {
     Setting s;
     test::adopt_test_shaders(s.library);
     const ShaderSet shaders({s.scene, s.spaces, s.library, s.strings, s.diag});
-    const LightSet lights(s.scene, shaders, s.diag);
+    const LightSet lights(s.scene, shaders);
     const ShadingClasses classes(s.scene, shaders, lights);
     const FrameContext frame{s.scene,       s.spaces, s.strings, s.diag,
                              s.world.get(), &shaders, &lights};

@@ -111,10 +111,11 @@ int32_t space(void* engine, sl_string from, sl_string to, uint32_t /*first*/, fl
 
 // --- lights
 
+// Shaders that are asked for their opacity alone see no lights.
 int32_t light_count(void* engine) {
     const Execution& execution = of(engine);
-    const bool has_lights = execution.thread != nullptr && execution.subject != nullptr &&
-                            execution.subject->lights != nullptr;
+    const bool has_lights = execution.ray_kind != SL_RAY_shadow && execution.thread != nullptr &&
+                            execution.subject != nullptr && execution.subject->lights != nullptr;
     return has_lights ? static_cast<int32_t>(execution.subject->lights->directional.size()) : 0;
 }
 

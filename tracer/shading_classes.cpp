@@ -124,4 +124,14 @@ ShadingClasses::ShadingClasses(const rib::Scene& scene, const ShaderSet& shaders
     }
 }
 
+std::vector<bool> shaded_opacity(const rib::Scene& scene, const ShaderSet& shaders) {
+    std::vector<bool> shaded;
+    shaded.reserve(scene.attributes.size());
+    for (const rib::Attributes& attributes : scene.attributes) {
+        const sl_object& surface = shaders.surface(attributes.surface)->object();
+        shaded.push_back((surface.facts & SL_FACT_writes_opacity) != 0);
+    }
+    return shaded;
+}
+
 } // namespace trace

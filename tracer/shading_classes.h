@@ -70,4 +70,7 @@ private:
     bool has_matte_ = false;
 };
 
+// By attribute state: its surface or displacement shader may change the opacity of a point.
+[[nodiscard]] std::vector<bool> shaded_opacity(const rib::Scene& scene, const ShaderSet& shaders);
+
 } // namespace trace

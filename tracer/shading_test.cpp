@@ -93,7 +93,7 @@ protected:
         const Spaces spaces(scene, {camera.screen_from_camera(), camera.ndc_from_screen(),
                                     camera.raster_from_screen()});
         const ShaderSet shaders({scene, spaces, library, strings, diag});
-        const LightSet lights(scene, shaders, diag);
+        const LightSet lights(scene, shaders);
         const ShadingClasses classes(scene, shaders, lights);
         const test::SheetWorld world(scene, sheets);
         const FrameContext frame{scene, spaces, strings, diag, &world, &shaders, &lights};

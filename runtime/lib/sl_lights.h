@@ -123,18 +123,20 @@ SL_INLINE sli sl_illuminate_cone(const sl_call* call, sli mask, slv from, slv ax
     return lit;
 }
 
-/* solar(axis, angle): L = axis. The disc of directions is not sampled; the engine may turn L within
- * it. */
+/* solar(axis, angle): L = axis, or a direction within the angle for each sample of the disc. */
 SL_INLINE sli sl_solar_cone(const sl_call* call, sli mask, slv axis, slf angle, slv* L) {
-    (void)angle;
     *L = axis;
+    if (sl_any(mask & (angle != (slf){0})))
+        call->services->solar_direction(call->engine, call->first, sl_bits(mask),
+                                        (const float*)&axis, (const float*)&angle, (float*)L);
     sl_mark_lit(call, mask);
     return mask;
 }
 
-/* solar(): light from everywhere, represented by the direction that faces the surface; needs Ns. */
+/* solar(): light from everywhere, a direction for each sample; needs Ns. */
 SL_INLINE sli sl_solar(const sl_call* call, sli mask, slv* L) {
     *L = slv_neg_3(slv_normalize(slv_var_3(call, SL_VAR_Ns)));
+    call->services->solar_direction(call->engine, call->first, sl_bits(mask), 0, 0, (float*)L);
     sl_mark_lit(call, mask);
     return mask;
 }

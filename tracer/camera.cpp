@@ -289,4 +289,11 @@ float Camera::footprint(float z_cam, float spacing_px) const {
     return spacing_px * unit_per_px_ * (perspective_ ? z_cam : 1.0f);
 }
 
+float Camera::blur_px(float z_cam) const {
+    const double z = static_cast<double>(z_cam);
+    const double spread =
+        perspective_ ? std::fabs(1 / z - 1 / focal_distance_) : std::fabs(1 - z / focal_distance_);
+    return static_cast<float>(2 * lens_radius_ * spread / static_cast<double>(unit_per_px_));
+}
+
 } // namespace trace

@@ -88,6 +88,8 @@ public:
     // Distance between shading samples that lie spacing_px pixels apart, at camera depth z.
     // Perpendicular to the view direction; the mean of x and y (design.md, section 5).
     [[nodiscard]] float footprint(float z_cam, float spacing_px) const;
+    // Diameter of the disc that the lens makes of a point at camera depth z, pixels.
+    [[nodiscard]] float blur_px(float z_cam) const;
 
 private:
     struct Plane { // n.P <= d is kept, camera space

@@ -102,7 +102,7 @@ std::unique_ptr<Film> Film::create(const Raster& raster, const Sampler& sampler,
 
 Film::Film(const Raster& raster, const Sampler& sampler, const FilterWeights& weights,
            const FilmSettings& settings)
-    : sampler_(sampler), weights_(weights), settings_(settings) {
+    : sampler_(sampler), weights_(weights), settings_(settings), picture_(raster.picture) {
     // Many samples per pixel, or many channels, make buckets smaller, so that their memory stays
     // bounded.
     const std::size_t per_pixel = static_cast<std::size_t>(sampler.per_pixel()) *
@@ -198,6 +198,11 @@ PixelRange Film::sample_pixels(std::size_t bucket) const {
     return buckets_[bucket].owned;
 }
 
+// What lies farther beyond the edges of the picture than filters reach is nobody's.
+PixelRange Film::tile_pixels(std::size_t bucket) const {
+    return whole_tiles(buckets_[bucket].owned).intersected(picture_.grown(reach_x_, reach_y_));
+}
+
 PixelRange Film::output_pixels(std::size_t bucket) const {
     return buckets_[bucket].output;
 }
@@ -214,7 +219,7 @@ bool Film::complete() const {
 
 // --- samples
 
-SampleBuffer Film::buffer(std::size_t bucket) {
+SampleBuffer Film::buffer(std::size_t bucket, std::span<const std::uint16_t> counts) {
     SampleBuffer out;
     {
         const std::lock_guard lock(mutex_);
@@ -225,7 +230,16 @@ SampleBuffer Film::buffer(std::size_t bucket) {
     }
     out.pixels = buckets_[bucket].owned;
     out.num_extra = static_cast<int>(settings_.extra.size());
-    const std::size_t n = out.pixels.area() * static_cast<std::size_t>(sampler_.per_pixel());
+    std::size_t n = out.pixels.area() * static_cast<std::size_t>(sampler_.per_pixel());
+    out.begins.clear();
+    if (!counts.empty()) {
+        assert(counts.size() == out.pixels.area());
+        out.begins.push_back(0);
+        for (const std::uint16_t count : counts) {
+            out.begins.push_back(out.begins.back() + count);
+        }
+        n = out.begins.back();
+    }
     out.samples.assign(n, Sample{});
     out.extra.assign(n * settings_.extra.size(), 0.0f);
     return out;

@@ -36,12 +36,32 @@ struct alignas(32) Sample {
 };
 static_assert(sizeof(Sample) == 32);
 
-// The samples of one bucket, in the order of the SampleBlock of the same pixels.
+// The samples of one bucket: pixels row by row, the first few samples of each in index order.
 struct SampleBuffer {
     PixelRange pixels;
     std::vector<Sample> samples;
     int num_extra = 0;        // further channels (AOVs) per sample
     std::vector<float> extra; // [sample][channel]
+    // Where the samples of a pixel begin, and their number at the end; empty: every pixel has
+    // equally many.
+    std::vector<std::uint32_t> begins;
+
+    struct Part {
+        std::size_t first, count;
+    };
+    // The samples of pixel number `pixel`.
+    [[nodiscard]] Part part(std::size_t pixel) const {
+        if (!begins.empty()) {
+            return {begins[pixel], begins[pixel + 1] - begins[pixel]};
+        }
+        const std::size_t each = samples.size() / pixels.area();
+        return {pixel * each, each};
+    }
+    [[nodiscard]] Part part(int x, int y) const {
+        return part(static_cast<std::size_t>(y - pixels.y0) *
+                        static_cast<std::size_t>(pixels.width()) +
+                    static_cast<std::size_t>(x - pixels.x0));
+    }
 };
 
 enum class DepthFilter : std::uint8_t { Min, Max, Average };
@@ -130,6 +150,8 @@ public:
     [[nodiscard]] int columns() const { return columns_; }
     // The pixels whose samples the bucket owns: what Sampler::fill is asked for.
     [[nodiscard]] PixelRange sample_pixels(std::size_t bucket) const;
+    // Those and the rest of their tiles: what must be known to decide about them.
+    [[nodiscard]] PixelRange tile_pixels(std::size_t bucket) const;
     // The pixels it computes.
     [[nodiscard]] PixelRange output_pixels(std::size_t bucket) const;
     [[nodiscard]] std::size_t num_planes() const {
@@ -146,8 +168,10 @@ public:
     // Before the first submit; the observer must outlive the film's work.
     void add_observer(FilmObserver& observer) { observers_.push_back(&observer); }
 
-    // A buffer for a bucket, every sample uncovered. Thread-safe.
-    [[nodiscard]] SampleBuffer buffer(std::size_t bucket);
+    // A buffer for a bucket, every sample uncovered. counts: how many samples each of its pixels
+    // has; empty: as many as the sampler gives at most. Thread-safe.
+    [[nodiscard]] SampleBuffer buffer(std::size_t bucket,
+                                      std::span<const std::uint16_t> counts = {});
     // Hands the samples of a bucket over. Filters every bucket that became complete. Thread-safe.
     // Samples that are not finite count as uncovered; see num_bad_samples().
     void submit(std::size_t bucket, SampleBuffer&& samples);
@@ -174,6 +198,7 @@ private:
     const Sampler& sampler_;
     const FilterWeights& weights_;
     FilmSettings settings_;
+    PixelRange picture_; // of the whole frame
     int columns_ = 0, rows_ = 0;
     int reach_x_ = 0, reach_y_ = 0; // pixels, of the widest filter
     int near_x_ = 1, near_y_ = 1;   // buckets that filters reach

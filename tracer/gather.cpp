@@ -81,16 +81,21 @@ void Gather::add(const SampleBuffer& buffer) {
 
 void Gather::add_row(const SampleBuffer& buffer, int y, int x0, int x1) {
     const auto buffer_width = static_cast<std::size_t>(buffer.pixels.width());
-    std::size_t first = (static_cast<std::size_t>(y - buffer.pixels.y0) * buffer_width +
-                         static_cast<std::size_t>(x0 - buffer.pixels.x0)) *
-                        per_pixel_;
+    std::size_t pixel = static_cast<std::size_t>(y - buffer.pixels.y0) * buffer_width +
+                        static_cast<std::size_t>(x0 - buffer.pixels.x0);
     Source* to = &sources_[static_cast<std::size_t>(y - pixels_.y0) * width_ +
                            static_cast<std::size_t>(x0 - pixels_.x0)];
     const auto channels = static_cast<std::size_t>(buffer.num_extra);
     const PixelHash hash(y);
-    for (int x = x0; x < x1; ++x, ++to, first += per_pixel_) {
+    for (int x = x0; x < x1; ++x, ++to, ++pixel) {
+        const bool is_full = buffer.begins.empty();
+        const std::size_t first = is_full ? pixel * per_pixel_ : buffer.begins[pixel];
+        const std::size_t count = is_full ? per_pixel_ : buffer.begins[pixel + 1] - first;
         *to = {buffer.samples.data() + first, buffer.extra.data() + first * channels,
-               sampler_.pattern(hash(x)) * reach_.near.size()};
+               static_cast<std::uint32_t>(sampler_.pattern(hash(x)) * reach_.near.size()),
+               static_cast<std::uint16_t>(count),
+               count == per_pixel_ ? 1.0f
+                                   : static_cast<float>(per_pixel_) / static_cast<float>(count)};
     }
 }
 
@@ -150,7 +155,7 @@ Gather::Sum Gather::careful(const Source* own, bool plain) const {
         sum.add(alone.finite() ? source.samples[s] : Sample{}, weight);
     };
     if (plain) {
-        for (std::size_t s = 0; s < per_pixel_; ++s) {
+        for (std::size_t s = 0; s < own->count; ++s) {
             add(*own, s, 1);
         }
     } else {
@@ -167,7 +172,7 @@ std::uint64_t Gather::pixel(const Source* own, Row& row, std::size_t x) const {
     const bool plain = !(sum.weight() >= reach_.weights->least_sum());
     if (plain || !sum.finite()) {
         sum = careful(own, plain);
-        for (std::size_t s = 0; s < per_pixel_; ++s) {
+        for (std::size_t s = 0; s < own->count; ++s) {
             Sum alone;
             alone.add(own->samples[s], 1);
             bad += alone.finite() ? 0 : 1;
@@ -190,14 +195,14 @@ std::uint64_t Gather::pixel(const Source* own, Row& row, std::size_t x) const {
 float Gather::depth(const Source& own) const {
     float nearest = uncovered_z, farthest = -uncovered_z;
     if (depth_ == DepthFilter::Min) {
-        for (std::size_t s = 0; s < per_pixel_; ++s) {
+        for (std::size_t s = 0; s < own.count; ++s) {
             nearest = own.samples[s].z < nearest ? own.samples[s].z : nearest;
         }
         return nearest;
     }
     double sum = 0;
     int covered = 0;
-    for (std::size_t s = 0; s < per_pixel_; ++s) {
+    for (std::size_t s = 0; s < own.count; ++s) {
         const float z = own.samples[s].z;
         if (z < uncovered_z) {
             sum += static_cast<double>(z);

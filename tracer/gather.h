@@ -7,6 +7,7 @@
 
 #include "tracer/film.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -29,7 +30,9 @@ private:
     struct Source {
         const Sample* samples = nullptr;
         const float* extra = nullptr;
-        std::size_t slot = 0; // in the weights of reach_: pattern of the sampler times neighbours
+        std::uint32_t slot = 0; // in the weights of reach_: pattern of the sampler times neighbours
+        std::uint16_t count = 0;
+        float density = 1; // of the densest samples, by its own: a pixel counts by its area
     };
     // A filter and where the pixels in its reach lie: offsets in sources_, row by row.
     struct Reach {
@@ -68,7 +71,7 @@ private:
     std::span<const ExtraChannel> extra_;
     DepthFilter depth_;
     PixelRange output_, pixels_;    // computed; looked at
-    std::size_t width_, per_pixel_; // of pixels_; samples
+    std::size_t width_, per_pixel_; // of pixels_; samples at most
     std::vector<Source> sources_;   // of pixels_, row by row
     Reach reach_;
     std::vector<Run> runs_;
@@ -86,8 +89,10 @@ void Gather::for_samples(const Source* own, const Reach& reach, const Body& body
         const std::size_t slot = first + k;
         const FilterWeights::Span span = weights.span(slot);
         const float* w = weights.weights(slot);
-        for (std::size_t s = span.first; s < span.last; ++s) {
-            body(source, s, w[s]);
+        const std::size_t last = std::min(span.last, source.count);
+        const float density = source.density;
+        for (std::size_t s = span.first; s < last; ++s) {
+            body(source, s, w[s] * density);
         }
     }
 }

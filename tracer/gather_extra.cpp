@@ -78,7 +78,7 @@ bool Gather::try_means(const Source* own, const Run& run, bool plain, float* out
         total += weight;
     };
     if (plain) {
-        for (std::size_t s = 0; s < per_pixel_; ++s) {
+        for (std::size_t s = 0; s < own->count; ++s) {
             add(*own, s, 1);
         }
     } else {

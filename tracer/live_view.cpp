@@ -46,21 +46,18 @@ std::vector<float> tile_of(const SampleBuffer& samples, const PixelRange& pixels
                            const Exposer& exposed) {
     std::vector<float> out;
     out.reserve(pixels.area() * channels);
-    const std::size_t per_pixel = samples.samples.size() / samples.pixels.area();
     for (int y = pixels.y0; y < pixels.y1; ++y) {
         for (int x = pixels.x0; x < pixels.x1; ++x) {
-            const std::size_t pixel = static_cast<std::size_t>(y - samples.pixels.y0) *
-                                          static_cast<std::size_t>(samples.pixels.width()) +
-                                      static_cast<std::size_t>(x - samples.pixels.x0);
+            const auto [first, count] = samples.part(x, y);
             float sum[channels] = {};
-            for (std::size_t s = pixel * per_pixel; s < (pixel + 1) * per_pixel; ++s) {
+            for (std::size_t s = first; s < first + count; ++s) {
                 const Sample& sample = samples.samples[s];
                 for (std::size_t c = 0; c < 3; ++c) {
                     sum[c] += finite(sample.color[c]);
                     sum[3] += finite(sample.opacity[c]);
                 }
             }
-            const float weight = 1 / static_cast<float>(per_pixel);
+            const float weight = 1 / static_cast<float>(count);
             for (std::size_t c = 0; c < channels; ++c) {
                 out.push_back(c < 3 ? exposed(sum[c] * weight) : sum[c] / 3 * weight);
             }

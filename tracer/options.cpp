@@ -240,6 +240,13 @@ private:
         case Id::samples:
             o.samples = positive_pair(row);
             break;
+        case Id::var:
+            o.variance = {number(0), integer(1), integer(2)};
+            if (!(o.variance->variance > 0) || o.variance->least < 1 ||
+                o.variance->most < o.variance->least) {
+                fail(row, "needs a positive variance and 1 <= MIN <= MAX");
+            }
+            break;
         case Id::crop:
             o.crop = {number(0), number(1), number(2), number(3)};
             break;
@@ -332,7 +339,6 @@ private:
         case Id::version:
             o.version = true;
             break;
-        case Id::var:
         case Id::radio:
         case Id::radio_error:
         case Id::rsamples:

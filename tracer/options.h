@@ -21,6 +21,11 @@ namespace trace {
 struct RenderOptions {
     int num_threads = 0;
     std::optional<std::pair<int, int>> res, samples;
+    struct Variance {
+        float variance;
+        int least, most;
+    };
+    std::optional<Variance> variance; // -var
     std::optional<std::array<float, 4>> crop;
     std::vector<std::pair<int, int>> frames; // ranges, first to last; empty: all
     std::string output;                      // "" = as the RIB says

@@ -29,4 +29,20 @@ struct PixelRange {
     friend bool operator==(const PixelRange&, const PixelRange&) = default;
 };
 
+// Tiles of the whole frame: what neighbouring pixels tell each other stays inside one, so that it
+// depends on no bucket and no crop window (sampling-001). Buckets of the default size are tiles.
+constexpr int tile_px = 16;
+
+[[nodiscard]] constexpr int tile_floor(int px) {
+    return px >= 0 ? px / tile_px * tile_px : -((tile_px - 1 - px) / tile_px * tile_px);
+}
+[[nodiscard]] constexpr PixelRange tile_at(int x, int y) {
+    return {tile_floor(x), tile_floor(y), tile_floor(x) + tile_px, tile_floor(y) + tile_px};
+}
+// The pixels of all tiles that hold some of a range.
+[[nodiscard]] constexpr PixelRange whole_tiles(const PixelRange& r) {
+    return {tile_floor(r.x0), tile_floor(r.y0), tile_floor(r.x1 - 1) + tile_px,
+            tile_floor(r.y1 - 1) + tile_px};
+}
+
 } // namespace trace

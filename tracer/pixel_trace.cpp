@@ -45,8 +45,9 @@ void append_parameters(std::string& to, int level, rt::ShadeBatch& batch, std::u
 // --- whose text
 
 PixelTrace::SampleText* PixelTrace::of_sample(std::uint32_t sample) {
-    const auto it = std::find_if(samples_.begin(), samples_.end(),
-                                 [&](const SampleText& s) { return s.sample == sample; });
+    const auto it = std::find_if(samples_.begin(), samples_.end(), [&](const SampleText& s) {
+        return s.sample == sample && s.pass == pass_;
+    });
     return it == samples_.end() ? nullptr : &*it;
 }
 
@@ -70,13 +71,15 @@ std::string ray_title(int level, bool is_first) {
 
 } // namespace
 
-void PixelTrace::begin_bucket(const SampleBlock& block) {
+void PixelTrace::begin_pass(const SampleBlock& block) {
+    ++pass_;
     for (std::uint32_t i = 0; i < block.count && samples_.size() < max_told; ++i) {
         if (block.px[i] != x_ || block.py[i] != y_) {
             continue;
         }
         SampleText& s = samples_.emplace_back();
         s.sample = i;
+        s.pass = pass_;
         std::string head = "sample " + std::to_string(samples_.size() - 1) + ": raster " +
                            number_text(static_cast<float>(block.px[i]) + block.x[i]) + " " +
                            number_text(static_cast<float>(block.py[i]) + block.y[i]) + ", time " +
@@ -248,6 +251,15 @@ void PixelTrace::shaded(std::span<const std::uint32_t> members, std::span<const 
     }
 }
 
+void PixelTrace::reused(std::uint32_t sample, float x_px, float y_px, const Sample& result) {
+    if (SampleText* s = of_sample(sample)) {
+        line(s->text, at_hit,
+             "shading reused from the sample at raster " + number_text(x_px) + " " +
+                 number_text(y_px) + ": color " + numbers_text(result.color) + ", opacity " +
+                 numbers_text(result.opacity));
+    }
+}
+
 // --- lights
 
 // A light is asked several times by one shader; its parameters are told once.
@@ -334,7 +346,7 @@ void PixelTrace::shadow_rays(std::uint32_t first, const geo::RayPacket& rays, co
 
 void PixelTrace::composited(std::span<const Sample> samples) {
     for (SampleText& s : samples_) {
-        if (s.is_hit) {
+        if (s.is_hit && s.pass == pass_) {
             const Sample& so_far = samples[s.sample];
             line(s.text, at_ray,
                  "so far: color " + numbers_text(so_far.color) + ", opacity " +
@@ -380,18 +392,20 @@ void for_weights(const Sampler& sampler, const FilterWeights& weights, int x, in
 } // namespace
 
 void PixelTrace::append_filter(const Sampler& sampler, const FilterWeights& weights) {
-    const auto width = static_cast<std::size_t>(kept_.pixels.width());
+    const auto per_pixel = static_cast<std::size_t>(sampler.per_pixel());
     float sum = 0;
     line(text_, at_sample, "filter: weight, sample, color, opacity");
     for_weights(sampler, weights, x_, y_, [&](int x, int y, int s, float weight) {
         if (!kept_.pixels.contains(x, y)) {
             return;
         }
-        const std::size_t at = (static_cast<std::size_t>(y - kept_.pixels.y0) * width +
-                                static_cast<std::size_t>(x - kept_.pixels.x0)) *
-                                   static_cast<std::size_t>(sampler.per_pixel()) +
-                               static_cast<std::size_t>(s);
-        const Sample& sample = kept_.samples[at];
+        const auto [first, count] = kept_.part(x, y);
+        if (static_cast<std::size_t>(s) >= count) {
+            return;
+        }
+        const Sample& sample = kept_.samples[first + static_cast<std::size_t>(s)];
+        weight *=
+            count == per_pixel ? 1 : static_cast<float>(per_pixel) / static_cast<float>(count);
         sum += weight;
         line(text_, at_ray,
              number_text(weight) + ", sample " + std::to_string(s) + " of pixel " +
@@ -419,17 +433,17 @@ void PixelTrace::finish(const Sampler& sampler, const FilterWeights& weights,
             (options.in_frame ? " of frame " + std::to_string(options.frame) : std::string()) +
             ", " + std::to_string(options.xres) + " by " + std::to_string(options.yres) +
             " pixels; points, vectors and normals are in camera space\n";
-    for (const SampleText& s : samples_) {
-        const Sample& result = kept_.samples[s.sample];
-        text_ += s.text;
+    const auto [first, count] = kept_.part(x_, y_);
+    for (std::size_t i = 0; i < std::min(samples_.size(), count); ++i) {
+        const Sample& result = kept_.samples[first + i];
+        text_ += samples_[i].text;
         line(text_, at_ray,
              "result: color " + numbers_text(result.color) + ", opacity " +
                  numbers_text(result.opacity) + ", z " + number_text(result.z));
     }
-    const auto per_pixel = static_cast<std::size_t>(sampler.per_pixel());
-    if (samples_.size() < per_pixel) {
+    if (samples_.size() < count) {
         line(text_, at_sample,
-             std::to_string(per_pixel - samples_.size()) +
+             std::to_string(count - samples_.size()) +
                  " more samples are not told one by one; the list of the filter has their results");
     }
     append_filter(sampler, weights);

@@ -25,8 +25,8 @@ public:
 
     [[nodiscard]] PixelRange pixel() const { return {x_, y_, x_ + 1, y_ + 1}; }
 
-    // --- told by the renderer; samples are numbered as in their SampleBlock
-    void begin_bucket(const SampleBlock& block);
+    // --- told by the renderer; samples are numbered as in the SampleBlock of the pass in work
+    void begin_pass(const SampleBlock& block);
     // A ray of a sample and what it met; the first is the camera's.
     // level: 0 of camera rays; those of shaders are indented by it.
     void ray(std::uint32_t sample, const geo::RayPacket& packet, std::size_t lane,
@@ -47,6 +47,8 @@ public:
     void printed_uniform(std::uint32_t first, std::uint32_t lanes, std::string_view text);
     // Colour and opacity as they go to the film, before compositing.
     void shaded(std::span<const std::uint32_t> members, std::span<const Sample> results);
+    // The sample was not shaded; its result follows from the one at a raster position.
+    void reused(std::uint32_t sample, float x_px, float y_px, const Sample& result);
     // All surfaces of a layer are in the samples; the ray of `sample` goes on, this much shows.
     void composited(std::span<const Sample> samples);
     void continues(std::uint32_t sample, std::span<const float> transmitted);
@@ -58,7 +60,8 @@ public:
 
 private:
     struct SampleText {
-        std::uint32_t sample;
+        std::uint32_t sample; // of its pass
+        int pass;
         std::string text;
         bool is_hit = false; // by the ray in work
         int num_hits = 0;
@@ -77,6 +80,7 @@ private:
 
     const FrameContext& frame_;
     int x_, y_;
+    int pass_ = 0;                    // in work
     std::vector<SampleText> samples_; // of the pixel, as far as they are told in full
     std::vector<std::uint32_t> sample_of_point_;
     std::string text_;

@@ -80,12 +80,12 @@ VisibilityOptions visibility_options(const rib::Options& options) {
 
 RayLayers::RayLayers(const FrameContext& frame, const ShadingClasses& classes,
                      const OutputBindings* outputs, const VisibilityOptions& options,
-                     HitShader& shader, ThreadState& thread)
+                     HitShader& shader, ThreadState& thread, ShadingReuse* reuse)
     : frame_(frame), classes_(classes),
       outputs_(outputs != nullptr && outputs->num_channels() > 0 ? outputs : nullptr),
       options_(options), opaque_counts_for_depth_(*std::max_element(options.depth_from.begin(),
                                                                     options.depth_from.end()) <= 1),
-      shader_(shader), thread_(thread) {}
+      shader_(shader), reuse_(reuse), thread_(thread) {}
 
 std::uint32_t RayLayers::trace(const RayBundle& rays, const RayResults& results,
                                ShadeObserver* observer) {
@@ -349,11 +349,21 @@ void RayLayers::composite_outputs(float* sample, const float* shade,
     }
 }
 
+// Camera rays have nobody who is told of batches.
+void RayLayers::shade(std::span<const geo::Hit> hits, std::span<Sample> out,
+                      std::span<float> out_extra) {
+    if (reuse_ != nullptr) {
+        reuse_->shade(shading_rays(), hits, out, out_extra);
+    } else {
+        shader_.shade(shading_rays(), hits, out, out_extra, this);
+    }
+}
+
 // Shades go straight into the samples: for nearly all of them that is the result.
 void RayLayers::composite_first() {
     const LevelTimer timer(thread_.counters, Part::work_shade, rays_.level);
     const std::span<const geo::Hit> hits(hits_.data(), rays_.count);
-    shader_.shade(shading_rays(), hits, results_.samples, results_.extra, this);
+    shade(hits, results_.samples, results_.extra);
     note_misses();
     const bool may_be_matte = classes_.has_matte();
     for (std::uint32_t i = 0; i < hits.size(); ++i) {
@@ -396,7 +406,7 @@ void RayLayers::composite_behind() {
         behind_media_.push_back(behind_[i].medium);
         behind_since_.push_back(behind_[i].t);
     }
-    shader_.shade(shading_rays(), hits, shades_, shades_extra_, this);
+    shade(hits, shades_, shades_extra_);
     note_misses();
     next_.clear();
     for (std::size_t i = 0; i < behind_.size(); ++i) {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "tracer/hit_shader.h"
+#include "tracer/shading_reuse.h"
 
 #include <array>
 #include <cstdint>
@@ -51,10 +52,11 @@ struct RayResults {
 
 class RayLayers : private ShadeObserver {
 public:
-    // The shader and the rest outlive it. outputs: nullptr: none.
+    // The shader and the rest outlive it. outputs: nullptr: none. reuse: shares the shades of hits
+    // among them; nullptr: nobody does.
     RayLayers(const FrameContext& frame, const ShadingClasses& classes,
               const OutputBindings* outputs, const VisibilityOptions& options, HitShader& shader,
-              ThreadState& thread);
+              ThreadState& thread, ShadingReuse* reuse = nullptr);
 
     // observer: told of the batches of all layers; nullptr: nobody. Returns the number of layers.
     std::uint32_t trace(const RayBundle& rays, const RayResults& results,
@@ -90,6 +92,7 @@ private:
     void note_miss(std::uint32_t ray, const base::V3f& origin, const base::V3f& direction,
                    int level);
     void tell_layer() const;
+    void shade(std::span<const geo::Hit> hits, std::span<Sample> out, std::span<float> out_extra);
     void composite_first();
     void composite_behind();
     void cross_surfaces();
@@ -114,6 +117,7 @@ private:
     VisibilityOptions options_;
     bool opaque_counts_for_depth_; // a zthreshold above 1 is never reached
     HitShader& shader_;
+    ShadingReuse* reuse_;
     ThreadState& thread_;
 
     RayBundle rays_; // of the call in work

@@ -69,6 +69,13 @@ std::vector<std::string> default_shader_path() {
 
 // --- configuration
 
+void set_integer(rib::Options& options, const std::string& name, int value) {
+    rib::Param& p = options.user[name];
+    p.name = name;
+    p.decl = {rib::StorageClass::Uniform, rib::ParamType::Integer, 1, false};
+    p.ints = {value};
+}
+
 rib::Options rib_defaults(const trace::RenderOptions& options) {
     rib::Options defaults;
     if (options.res) {
@@ -76,6 +83,11 @@ rib::Options rib_defaults(const trace::RenderOptions& options) {
     }
     if (options.samples) {
         std::tie(defaults.xsamples, defaults.ysamples) = *options.samples;
+    }
+    if (options.variance) {
+        defaults.pixel_variance = options.variance->variance;
+        set_integer(defaults, "render:minsamples", options.variance->least);
+        set_integer(defaults, "render:maxsamples", options.variance->most);
     }
     return defaults;
 }

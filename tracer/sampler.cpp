@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/sampler.h"
 
+#include "tracer/adaptive.h"
+#include "tracer/progressive.h"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -18,6 +21,7 @@ constexpr int max_per_pixel = 4096;
 // filter weights.
 constexpr int pattern_budget = 4096;
 constexpr int min_patterns = 16;
+constexpr std::size_t max_patterns = pattern_budget;
 constexpr float below_one = 0x1.fffffep-1f;
 
 constexpr auto mix = PixelHash::mix;
@@ -155,6 +159,12 @@ SamplerSettings sampler_settings(const rib::Options& options, base::Diag& diag) 
     s.shutter_open = options.shutter_open;
     s.shutter_close = std::max(options.shutter_open, options.shutter_close);
     s.wants_lens = options.fstop < rib::ri_infinity && options.focal_length > 0;
+    const AdaptiveSettings adaptive = adaptive_settings(options, s.nx * s.ny);
+    if (adaptive.is_on() && s.jitter == 1) { // a regular grid has no first few
+        s.least = adaptive.least;
+        s.nx = adaptive.most;
+        s.ny = 1;
+    }
     return s;
 }
 
@@ -171,16 +181,56 @@ Sampler::Sampler(const SamplerSettings& settings)
     lens_x_.resize(settings.wants_lens ? num_patterns_ * n : 0);
     lens_y_.resize(lens_x_.size());
     for (std::size_t p = 0; p < num_patterns_; ++p) {
-        Random position(p, Use::Position), time(p, Use::Time), lens(p, Use::Lens);
-        multi_jitter(settings.nx, settings.ny, settings.jitter, position,
-                     std::span(x_).subspan(p * n, n), std::span(y_).subspan(p * n, n));
-        if (moving_) {
-            stratified_times(settings.shutter_open, settings.shutter_close, time,
-                             std::span(time_).subspan(p * n, n));
+        if (settings.least > 0) {
+            make_progressive(p);
+        } else {
+            make_stratified(p);
         }
-        if (settings.wants_lens) {
-            lens_points(settings, lens, std::span(lens_x_).subspan(p * n, n),
-                        std::span(lens_y_).subspan(p * n, n));
+    }
+}
+
+// Patterns of different seeds have different random numbers.
+std::size_t Sampler::numbered(std::size_t pattern) const {
+    return pattern + std::size_t{settings_.seed} * max_patterns;
+}
+
+void Sampler::make_stratified(std::size_t pattern) {
+    const auto n = static_cast<std::size_t>(per_pixel_);
+    const auto of_pattern = [&](std::vector<float>& table) {
+        return std::span(table).subspan(pattern * n, n);
+    };
+    const std::size_t number = numbered(pattern);
+    Random position(number, Use::Position), time(number, Use::Time), lens(number, Use::Lens);
+    multi_jitter(settings_.nx, settings_.ny, settings_.jitter, position, of_pattern(x_),
+                 of_pattern(y_));
+    if (moving_) {
+        stratified_times(settings_.shutter_open, settings_.shutter_close, time, of_pattern(time_));
+    }
+    if (settings_.wants_lens) {
+        lens_points(settings_, lens, of_pattern(lens_x_), of_pattern(lens_y_));
+    }
+}
+
+void Sampler::make_progressive(std::size_t pattern) {
+    const auto seed = [&](Use use) {
+        return hash(static_cast<std::uint32_t>(numbered(pattern)), static_cast<std::uint32_t>(use),
+                    0x70726f67U);
+    };
+    const auto n = static_cast<std::size_t>(per_pixel_);
+    const float open = settings_.shutter_open, close = settings_.shutter_close;
+    for (std::size_t s = 0, at = pattern * n; s < n; ++s, ++at) {
+        const auto index = static_cast<std::uint32_t>(s);
+        const UnitPoint position = progressive_point(index, seed(Use::Position));
+        x_[at] = position.x;
+        y_[at] = position.y;
+        if (moving_) {
+            const float t = shuffled_point(index, seed(Use::Time)).x;
+            time_[at] = std::clamp(open + t * (close - open), open, close);
+        }
+        if (settings_.wants_lens) {
+            const UnitPoint lens = shuffled_point(index, seed(Use::Lens));
+            disc_point(static_cast<double>(lens.x), static_cast<double>(lens.y), lens_x_[at],
+                       lens_y_[at]);
         }
     }
 }
@@ -212,37 +262,33 @@ template <class T> void copy_few(const T* from, std::size_t n, T* to) {
 
 } // namespace
 
-void Sampler::fill_row(int py, std::size_t at, SampleBlock& out) const {
-    const auto n = static_cast<std::size_t>(per_pixel_);
-    const auto copy = [&](const std::vector<float>& table, std::uint32_t h,
+void Sampler::fill_pixel(std::uint32_t h, const PixelSamples& wanted, std::size_t at,
+                         SampleBlock& out) const {
+    const std::size_t first = wanted.first, n = wanted.last - first;
+    const auto copy = [&](const std::vector<float>& table, std::uint32_t of,
                           std::vector<float>& to) {
-        copy_few(table.data() + pattern(h) * n, n, to.data() + at);
+        copy_few(table.data() + pattern(of) * static_cast<std::size_t>(per_pixel_) + first, n,
+                 to.data() + at);
     };
-    const PixelHash row(py);
-    for (int px = out.pixels.x0; px < out.pixels.x1; ++px, at += n) {
-        const std::uint32_t h = row(px);
-        copy(x_, h, out.x);
-        copy(y_, h, out.y);
-        if (moving_) {
-            copy(time_, derived(h, Use::Time), out.time);
-        }
-        if (settings_.wants_lens) {
-            const std::uint32_t lens = derived(h, Use::Lens);
-            copy(lens_x_, lens, out.lens_x);
-            copy(lens_y_, lens, out.lens_y);
-        }
-        for (std::size_t s = 0; s < n; ++s) {
-            out.px[at + s] = px;
-            out.py[at + s] = py;
-            out.seed[at + s] = h + golden * static_cast<std::uint32_t>(s + 8);
-        }
+    copy(x_, h, out.x);
+    copy(y_, h, out.y);
+    if (moving_) {
+        copy(time_, derived(h, Use::Time), out.time);
+    }
+    if (settings_.wants_lens) {
+        const std::uint32_t lens = derived(h, Use::Lens);
+        copy(lens_x_, lens, out.lens_x);
+        copy(lens_y_, lens, out.lens_y);
+    }
+    for (std::size_t s = 0; s < n; ++s) {
+        out.px[at + s] = wanted.px;
+        out.py[at + s] = wanted.py;
+        out.seed[at + s] = h + golden * static_cast<std::uint32_t>(first + s + 8);
     }
 }
 
-void Sampler::fill(const PixelRange& pixels, SampleBlock& out) const {
-    out.pixels = pixels;
-    out.per_pixel = per_pixel_;
-    out.count = pixels.area() * static_cast<std::size_t>(per_pixel_);
+void Sampler::begin(std::size_t count, SampleBlock& out) const {
+    out.count = count;
     const std::size_t padded = out.num_packets() * 8;
     out.px.resize(padded);
     out.py.resize(padded);
@@ -255,11 +301,9 @@ void Sampler::fill(const PixelRange& pixels, SampleBlock& out) const {
     if (!moving_) {
         std::fill(out.time.begin(), out.time.end(), settings_.shutter_open);
     }
-    std::size_t at = 0;
-    const std::size_t row = static_cast<std::size_t>(pixels.width() * per_pixel_);
-    for (int py = pixels.y0; py < pixels.y1; ++py, at += row) {
-        fill_row(py, at, out);
-    }
+}
+
+void Sampler::finish(SampleBlock& out) {
     for (std::uint32_t& seed : out.seed) {
         seed = mix(seed);
     }
@@ -271,6 +315,33 @@ void Sampler::fill(const PixelRange& pixels, SampleBlock& out) const {
     };
     pad(out.px), pad(out.py), pad(out.x), pad(out.y), pad(out.time), pad(out.seed);
     pad(out.lens_x), pad(out.lens_y);
+}
+
+void Sampler::fill(const PixelRange& pixels, int each, SampleBlock& out) const {
+    const auto n = static_cast<std::size_t>(each);
+    begin(pixels.area() * n, out);
+    std::size_t at = 0;
+    for (int py = pixels.y0; py < pixels.y1; ++py) {
+        const PixelHash row(py);
+        for (int px = pixels.x0; px < pixels.x1; ++px, at += n) {
+            fill_pixel(row(px), {px, py, 0, static_cast<std::uint16_t>(each)}, at, out);
+        }
+    }
+    finish(out);
+}
+
+void Sampler::fill(std::span<const PixelSamples> wanted, SampleBlock& out) const {
+    std::size_t count = 0;
+    for (const PixelSamples& w : wanted) {
+        count += static_cast<std::size_t>(w.last - w.first);
+    }
+    begin(count, out);
+    std::size_t at = 0;
+    for (const PixelSamples& w : wanted) {
+        fill_pixel(PixelHash(w.py)(w.px), w, at, out);
+        at += static_cast<std::size_t>(w.last - w.first);
+    }
+    finish(out);
 }
 
 } // namespace trace

@@ -24,16 +24,24 @@ struct SamplerSettings {
     float jitter = 1; // 0: regular grid; between: part of the way from the centre of the cell
     float shutter_open = 0, shutter_close = 0;
     bool wants_lens = false;
+    // Adaptive sampling: what every pixel gets; nx * ny is the most. 0: all pixels get them all.
+    // Otherwise the samples of a pixel are a sequence whose first n are well spread for any n.
+    int least = 0;
+    std::uint32_t seed = 0; // other samples, as good: for tests and studies
 };
-// From PixelSamples, Hider "jitter", Shutter and DepthOfField. Excessive sample counts are reported
-// and limited.
+// From PixelSamples, PixelVariance, Hider "jitter", Shutter and DepthOfField. Excessive sample
+// counts are reported and limited.
 [[nodiscard]] SamplerSettings sampler_settings(const rib::Options& options, base::Diag& diag);
 
-// Samples of a rectangle of pixels, structure of arrays: pixels row by row, samples in index order.
+// Some samples of one pixel.
+struct PixelSamples {
+    std::int32_t px, py;
+    std::uint16_t first, last; // samples first .. last - 1
+};
+
+// Samples of pixels, structure of arrays: pixels row by row, samples in index order.
 // Arrays are padded to a multiple of eight (padding repeats the last sample).
 struct SampleBlock {
-    PixelRange pixels;
-    int per_pixel = 0;
     std::size_t count = 0;
     std::vector<std::int32_t> px, py;  // pixel
     std::vector<float> x, y;           // position in the pixel, [0,1)
@@ -68,8 +76,11 @@ public:
     [[nodiscard]] const SamplerSettings& settings() const { return settings_; }
     [[nodiscard]] int per_pixel() const { return per_pixel_; }
 
-    // Reuses the block's memory.
-    void fill(const PixelRange& pixels, SampleBlock& out) const;
+    // All samples, or the first `each`, of a rectangle of pixels. Reuses the block's memory.
+    void fill(const PixelRange& pixels, SampleBlock& out) const { fill(pixels, per_pixel_, out); }
+    void fill(const PixelRange& pixels, int each, SampleBlock& out) const;
+    // The samples asked for.
+    void fill(std::span<const PixelSamples> wanted, SampleBlock& out) const;
 
     // Positions: pattern of a pixel, by its hash, and the per_pixel() offsets of a pattern.
     [[nodiscard]] std::size_t num_patterns() const { return num_patterns_; }
@@ -82,7 +93,13 @@ public:
 private:
     [[nodiscard]] std::span<const float> slice(const std::vector<float>& table,
                                                std::size_t pattern) const;
-    void fill_row(int py, std::size_t at, SampleBlock& out) const;
+    void make_stratified(std::size_t pattern);
+    void make_progressive(std::size_t pattern);
+    [[nodiscard]] std::size_t numbered(std::size_t pattern) const;
+    void begin(std::size_t count, SampleBlock& out) const;
+    void fill_pixel(std::uint32_t hash, const PixelSamples& wanted, std::size_t at,
+                    SampleBlock& out) const;
+    static void finish(SampleBlock& out);
 
     SamplerSettings settings_;
     int per_pixel_ = 4;

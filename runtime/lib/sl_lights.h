@@ -35,7 +35,8 @@ typedef struct sl_light_loop {
 /* What a loop goes on from after a suspension: all but the sample at hand, whose values the shader
  * has in variables, and what is sent, which lies on the stack. */
 typedef struct sl_saved_lights {
-    _Alignas(slf) unsigned char bytes[__builtin_offsetof(sl_light_loop, L)];
+    unsigned char bytes[__builtin_offsetof(sl_light_loop, L)]
+        __attribute__((aligned(sizeof(slf)))); /* C++ tests read this header, too */
 } sl_saved_lights;
 
 /* The next light sample that reaches any lane: 1 and the lanes reached; 0 when there is none left.

@@ -34,6 +34,39 @@ const char* shape_name(const rib::Shape& shape) {
     return std::visit(Name{}, shape);
 }
 
+std::optional<std::string_view> text(const rib::Attributes& attributes, const char* name) {
+    const rib::Param* p = attributes.find(name);
+    return p && !p->strings.empty() ? std::optional<std::string_view>(p->strings.front())
+                                    : std::nullopt;
+}
+
+// The words of BMRT and those of PRMan.
+std::optional<ShadowMode> shadow_mode_of(std::string_view word) {
+    static constexpr std::pair<std::string_view, ShadowMode> words[] = {
+        {"none", ShadowMode::None},     {"transparent", ShadowMode::None},
+        {"opaque", ShadowMode::Opaque}, {"Os", ShadowMode::Os},
+        {"shader", ShadowMode::Shader}, {"shade", ShadowMode::Shader}};
+    for (const auto& [name, mode] : words) {
+        if (name == word) {
+            return mode;
+        }
+    }
+    return std::nullopt;
+}
+
+constexpr const char* shadow_attributes[] = {"visibility:transmission", "render:casts_shadows",
+                                             "radiosity:casts_shadows"};
+
+const rib::Param* unknown_shadow_word(const rib::Attributes& attributes) {
+    for (const char* name : shadow_attributes) {
+        const auto word = text(attributes, name);
+        if (word && !shadow_mode_of(*word)) {
+            return attributes.find(name);
+        }
+    }
+    return nullptr;
+}
+
 class Collector {
 public:
     Collector(const rib::Scene& scene, const BuildOptions& options, base::Diag& diag)
@@ -69,6 +102,12 @@ private:
         table_.shadow_modes.reserve(scene_.attributes.size());
         for (std::size_t i = 0; i < scene_.attributes.size(); ++i) {
             const ShadowMode mode = geo::shadow_mode(scene_.attributes[i]);
+            if (const rib::Param* word = unknown_shadow_word(scene_.attributes[i])) {
+                diag_.report_once("casts_shadows " + word->strings.front(), Severity::Warning,
+                                  Code::Range, word->pos,
+                                  "\"" + word->name + "\" \"" + word->strings.front() +
+                                      "\": expected none, opaque, Os or shader; it does nothing");
+            }
             const bool is_shaded =
                 i >= options_.shades_opacity.size() || options_.shades_opacity[i];
             table_.shadow_modes.push_back(mode == ShadowMode::Shader && !is_shaded ? ShadowMode::Os
@@ -378,26 +417,6 @@ std::optional<int> number(const rib::Attributes& attributes, const char* name) {
     return std::nullopt;
 }
 
-std::optional<std::string_view> text(const rib::Attributes& attributes, const char* name) {
-    const rib::Param* p = attributes.find(name);
-    return p && !p->strings.empty() ? std::optional<std::string_view>(p->strings.front())
-                                    : std::nullopt;
-}
-
-// The words of BMRT and those of PRMan.
-std::optional<ShadowMode> shadow_mode_of(std::string_view word) {
-    static constexpr std::pair<std::string_view, ShadowMode> words[] = {
-        {"none", ShadowMode::None},     {"transparent", ShadowMode::None},
-        {"opaque", ShadowMode::Opaque}, {"Os", ShadowMode::Os},
-        {"shader", ShadowMode::Shader}, {"shade", ShadowMode::Shader}};
-    for (const auto& [name, mode] : words) {
-        if (name == word) {
-            return mode;
-        }
-    }
-    return std::nullopt;
-}
-
 } // namespace
 
 // BMRT's bits first; the later "visibility" attributes override the kinds of ray they name
@@ -441,8 +460,7 @@ ShadowMode shadow_mode(const rib::Attributes& attributes) {
     if (const auto mode = text(attributes, "shade:transmissionhitmode")) {
         return *mode == "shader" ? ShadowMode::Shader : ShadowMode::Os;
     }
-    for (const char* name :
-         {"visibility:transmission", "render:casts_shadows", "radiosity:casts_shadows"}) {
+    for (const char* name : shadow_attributes) {
         const auto word = text(attributes, name);
         if (const auto mode = word ? shadow_mode_of(*word) : std::nullopt) {
             return *mode;

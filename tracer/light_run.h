@@ -5,6 +5,7 @@
 // shaders being lit see L from the point towards the light, its length kept.
 #pragma once
 
+#include "geometry/shadow_segment.h"
 #include "runtime/batch.h"
 #include "tracer/execution.h"
 #include "tracer/light_choice.h"
@@ -101,12 +102,8 @@ private:
     [[nodiscard]] base::V3f point(std::uint32_t lane) const {
         return {Ps_[0][lane], Ps_[1][lane], Ps_[2][lane]};
     }
-    struct Segment {
-        base::V3f origin, direction;
-        float tfar;
-    };
-    [[nodiscard]] Segment shadow_segment(const LightSample& sample, std::uint32_t lane,
-                                         ShadowOrigins& origins) const;
+    [[nodiscard]] geo::ShadowSegment shadow_segment(const LightSample& sample, std::uint32_t lane,
+                                                    ShadowOrigins& origins) const;
 
     Execution* asker_ = nullptr;
     const LightInfo* info_ = nullptr;

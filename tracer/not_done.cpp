@@ -26,13 +26,6 @@ public:
         displacement(a);
         shader("Interior", a.interior, "no rays pass through volumes in this version; ignored");
         shader("Exterior", a.exterior, "no rays pass through volumes in this version; ignored");
-        const rib::Param* casts = a.find("render:casts_shadows");
-        if (casts != nullptr && !casts->strings.empty() && casts->strings[0] != "none" &&
-            casts->strings[0] != "opaque") {
-            once("casts_shadows", casts->pos,
-                 "Attribute \"render\" \"casts_shadows\" \"" + casts->strings[0] +
-                     "\": shadows are opaque in this version");
-        }
     }
 
     // Without these attributes BMRT bumps normals only, too.

@@ -231,31 +231,10 @@ base::V3f ShadowOrigins::origin(const Execution& asker, std::uint64_t serial, st
     return spawn_[lane].towards(towards);
 }
 
-namespace {
-
-float largest(const base::V3f& v) {
-    return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
-}
-
-// Rounding of a difference of points and of its sum with one: a few half units in the last place
-// of the larger. At the far end of a ray that is by how much it may miss.
-float far_end_error(const base::V3f& from, const base::V3f& direction) {
-    constexpr float roundings = 8 * 0x1p-24f;
-    return roundings * (largest(from) + largest(direction));
-}
-
-// t of a point a ray is aimed at, less its error: what lies on the point is not met.
-float short_of(const base::V3f& from, const base::V3f& direction) {
-    const float length = base::length(direction);
-    return length > 0 ? std::max(0.0f, 1 - far_end_error(from, direction) / length) : 0;
-}
-
-} // namespace
-
 // To a place on a surface the ray ends outside that surface's own error; to a point in space it
 // ends short of it by the point's error.
-LightRun::Segment LightRun::shadow_segment(const LightSample& sample, std::uint32_t lane,
-                                           ShadowOrigins& origins) const {
+geo::ShadowSegment LightRun::shadow_segment(const LightSample& sample, std::uint32_t lane,
+                                            ShadowOrigins& origins) const {
     const base::V3f P = point(lane);
     const base::V3f L(sample.L[lane], sample.L[LightSample::lanes + lane],
                       sample.L[2 * LightSample::lanes + lane]);
@@ -263,19 +242,15 @@ LightRun::Segment LightRun::shadow_segment(const LightSample& sample, std::uint3
     if (info_->from_infinity) {
         return {origin, base::normalize(L), std::numeric_limits<float>::infinity()};
     }
-    base::V3f end = P + L;
+    const base::V3f end = P + L;
     if (info_->area != nullptr) {
         const geo::SpawnPoint spawn = asker_->frame.world->spawn(sample.on[lane]);
-        const bool is_place =
-            largest(end - spawn.front) <= far_end_error(end, L) + largest(spawn.front - spawn.back);
-        if (is_place) { // else the shader moved the light
-            const float error = far_end_error(origin, end - origin);
-            const base::V3f out = base::dot(spawn.normal, L) > 0 ? -spawn.normal : spawn.normal;
-            end = spawn.towards(-L) + out * error;
-            return {origin, end - origin, 1};
+        const float error = geo::far_end_error(end, L) + 2 * base::length(spawn.front - spawn.back);
+        if (base::length(end - spawn.front) <= error) { // else the shader moved the light
+            return geo::segment_to(origin, spawn);
         }
     }
-    return {origin, end - origin, short_of(origin, end - origin)};
+    return geo::segment_to(origin, end);
 }
 
 void LightRun::trace_shadows(std::int32_t index, std::uint32_t mask, ShadowOrigins& origins) {
@@ -394,7 +369,7 @@ private:
         if (!is_endless) {
             const base::V3f far = is_segment ? end(lane, D, P - D) : target;
             d = far - origin;
-            tfar = far == target ? short_of(origin, d) : 1;
+            tfar = far == target ? geo::segment_to(origin, far).tfar : 1;
         }
         const float length = base::length(d);
         const std::uint32_t point_seed = seed(lane, P);

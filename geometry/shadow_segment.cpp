@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "geometry/shadow_segment.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace geo {
+
+namespace {
+
+float largest(const base::V3f& v) {
+    return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
+}
+
+} // namespace
+
+float far_end_error(const base::V3f& from, const base::V3f& direction) {
+    constexpr float roundings = 8 * 0x1p-24f; // half units in the last place
+    return roundings * (largest(from) + largest(direction));
+}
+
+ShadowSegment segment_to(const base::V3f& origin, const base::V3f& end) {
+    const base::V3f d = end - origin;
+    const float length = base::length(d);
+    return {origin, d, length > 0 ? std::max(0.0f, 1 - far_end_error(origin, d) / length) : 0};
+}
+
+ShadowSegment segment_to(const base::V3f& origin, const SpawnPoint& end) {
+    const base::V3f d = end.front - origin;
+    const bool from_behind = base::dot(end.normal, d) > 0;
+    const base::V3f out = from_behind ? -end.normal : end.normal;
+    const base::V3f to = (from_behind ? end.back : end.front) + out * far_end_error(origin, d);
+    return {origin, to - origin, 1};
+}
+
+} // namespace geo

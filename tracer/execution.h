@@ -30,6 +30,9 @@ namespace trace {
 
 struct ShaderEntry;
 class ShaderSet;
+class IndirectLight;
+struct DiffusePoint;
+struct IndirectBatch;
 class LightSet;
 class LightRun;
 struct LightScratch;
@@ -57,8 +60,9 @@ struct FrameContext {
     // Iterations of loops a packet may run: Option "limits" "loopsteps".
     std::uint32_t max_loop_steps = default_loop_steps;
 
-    rt::ShaderLibrary* library = nullptr; // null: shaders cannot be made any more
-    BadPlace* bad_place = nullptr;        // told by checked code; one thread only
+    rt::ShaderLibrary* library = nullptr;    // null: shaders cannot be made any more
+    BadPlace* bad_place = nullptr;           // told by checked code; one thread only
+    const IndirectLight* indirect = nullptr; // null: there is none
 
     static constexpr std::uint32_t default_loop_steps = 1U << 20;
 };
@@ -92,6 +96,9 @@ struct ThreadState {
     PixelTrace* trace = nullptr;            // --trace-pixel: told what happens
     ShaderProfile* profile = nullptr;       // --profile-shaders: this thread's rows
     BadValues bad;                          // results that were no numbers
+    // A rehearsal: points whose indirect light is not known yet are noted here, and nothing that is
+    // shaded counts (indirect_prepass.h).
+    std::vector<DiffusePoint>* wanted = nullptr;
     bool is_abandoned = false; // a shader was interrupted: what is in work is worth nothing
 };
 
@@ -148,6 +155,7 @@ public:
     std::int32_t light_sample = 0;       // and the sample it is asked for
     int ray_level = 0;
     int ray_kind = SL_RAY_camera;
+    std::shared_ptr<IndirectBatch> indirect; // of the batch's points, once one has asked
     SpaceCache spaces;
     rt::UniformPrints uniform_prints;
 

@@ -9,9 +9,11 @@
 #include "tracer/camera.h"
 #include "tracer/develop.h"
 #include "tracer/display.h"
+#include "tracer/energy_check.h"
 #include "tracer/filter.h"
 #include "tracer/frame_hash.h"
 #include "tracer/imager.h"
+#include "tracer/indirect_frame.h"
 #include "tracer/lights.h"
 #include "tracer/live_display.h"
 #include "tracer/not_done.h"
@@ -90,6 +92,7 @@ public:
             outputs_ = OutputSet(displays, scene.options, shader_outputs(*classes_), tools.diag);
             bindings_ = OutputBindings(outputs_, *classes_, tools.diag);
         }
+        indirect_ = std::make_unique<IndirectLight>(scene);
         const PhaseTimer timer(tools.stats, Phase::geometry);
         world_ = geo::World::build(scene,
                                    {camera_.view(), scene.options.shutter_open,
@@ -112,7 +115,9 @@ public:
                 textures_.get(),
                 settings_.interrupted,
                 max_loop_steps(scene_.options),
-                &tools_.library};
+                &tools_.library,
+                nullptr,
+                indirect_->is_used() ? indirect_.get() : nullptr};
     }
     void add_stats(const Counters& counted) const {
         tools_.stats.add(counted, shaders_->names(), tick_rate_.seconds_per_tick());
@@ -130,6 +135,11 @@ public:
         const DisplayPlan* shown = nullptr; // by settings.live, meanwhile
     };
     FrameResult render(Image& image, const Company& company) const;
+
+    // What does not depend on the pixels that are rendered; call once, before. False: interrupted.
+    [[nodiscard]] bool prepare() const;
+    // --check-energy: prints a table, reports shaders that give light away.
+    void check_energy() const;
 
 private:
     bool show(Film& film, const DisplayPlan* shown) const;
@@ -154,6 +164,7 @@ private:
     std::unique_ptr<ShaderSet> shaders_;
     std::unique_ptr<LightSet> lights_;
     std::unique_ptr<ShadingClasses> classes_;
+    std::unique_ptr<IndirectLight> indirect_;
     OutputSet outputs_;
     OutputBindings bindings_;
     std::unique_ptr<geo::World> world_;
@@ -184,6 +195,28 @@ bool Frame::show(Film& film, const DisplayPlan* shown) const {
         film.add_observer(*viewer);
     }
     return viewer != nullptr;
+}
+
+bool Frame::prepare() const {
+    const PhaseTimer timer(tools_.stats, Phase::indirect);
+    const FrameContext frame = context();
+    const IndirectPrepass::Tools tools{frame, camera_, *classes_, settings_.num_threads,
+                                       [this] { return wants_stop(settings_, tools_.diag); }};
+    Counters counters;
+    const bool is_done = prepare_indirect(*indirect_, tools, counters);
+    add_stats(counters);
+    tools_.stats.amounts[Amount::irradiance_records] = indirect_->cache.records().size();
+    tools_.stats.amounts[Amount::irradiance_bytes] = indirect_->cache.memory_bytes();
+    return is_done;
+}
+
+void Frame::check_energy() const {
+    const FrameContext frame = context();
+    ThreadState thread;
+    const std::vector<EnergyRow> rows = EnergyCheck(frame, camera_, *classes_, thread).run();
+    const std::string text = energy_text(rows);
+    std::fwrite(text.data(), 1, text.size(), stdout);
+    report_energy(rows, tools_.diag);
 }
 
 FrameResult Frame::render(Image& image, const Company& company) const {
@@ -506,27 +539,34 @@ FrameResult trace_pixels(const Frame& frame, const RenderSettings& settings,
 FrameResult render_image(const rib::Scene& scene, const RenderSettings& settings,
                          const FrameTools& tools, Image& image) {
     const Frame frame(scene, settings, tools, scene.options.displays);
-    return frame.render(image, {});
+    return frame.prepare() ? frame.render(image, {}) : FrameResult::Interrupted;
 }
 
 FrameResult render_frame(const rib::Scene& scene, const RenderSettings& settings,
                          const FrameTools& tools) {
     const std::vector<rib::Display> displays = displays_of(scene.options, settings, tools.diag);
-    const bool tracing = !settings.trace_pixels.empty();
-    if (settings.keep_existing && !tracing && all_exist(displays)) {
+    const bool makes_picture = settings.trace_pixels.empty() && !settings.check_energy;
+    if (settings.keep_existing && makes_picture && all_exist(displays)) {
         tools.diag.report(base::Severity::Info, base::Code::None, {},
                           "frame " + std::to_string(scene.options.frame) +
                               ": its pictures exist; skipped");
         return FrameResult::Done;
     }
-    if (!tracing && !can_write(displays, tools.diag)) {
+    if (makes_picture && !can_write(displays, tools.diag)) {
         return FrameResult::Failed;
     }
     const Frame frame(scene, settings, tools, displays);
     if (wants_stop(settings, tools.diag)) {
         return FrameResult::Interrupted;
     }
-    if (tracing) {
+    if (settings.check_energy) {
+        frame.check_energy();
+        return FrameResult::Done;
+    }
+    if (!frame.prepare()) {
+        return FrameResult::Interrupted;
+    }
+    if (!settings.trace_pixels.empty()) {
         return trace_pixels(frame, settings, tools);
     }
     Checkpoint checkpoint(

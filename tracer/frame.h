@@ -37,6 +37,7 @@ struct RenderSettings {
     std::string default_output;
     // --trace-pixel: what these pixels did is printed, and no picture is made.
     std::vector<std::pair<int, int>> trace_pixels;
+    bool check_energy = false; // --check-energy: shaders are checked, and no picture is made
     SpecialMode specialise = SpecialMode::Auto;
     bool is_verbose = false;    // say what is being done
     bool keep_existing = false; // frames whose files are all there already are skipped (-safe)

@@ -194,7 +194,8 @@ void HitShader::gather(ShadeJob& job, NeededVariables needed) const {
     const bool traces = (c.surface->object().facts & SL_FACT_traces) != 0;
     const bool needs_footprint =
         traces || (needed.main & (bit(SL_VAR_du) | bit(SL_VAR_dv))) != 0 || needed.aux != 0;
-    const bool asks = c.by_attributes; // incident(), opposite(), sides of the surface, rayinfo()
+    // incident(), opposite(), sides of the surface, rayinfo(); which side is seen.
+    const bool asks = c.by_attributes || c.lights.is_indirect;
     job.has_rays = needs_footprint || asks || (needed.main & bit(SL_VAR_I)) != 0;
     if (!job.has_rays) {
         return;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The frame's lights as facts: which are ambient, directional, shadowed, and their categories.
 #include "tracer/area_light.h"
+#include "tracer/indirect_light.h"
 #include "tracer/light_choice.h"
 #include "tracer/lights.h"
 #include "tracer/shader_set.h"
@@ -130,6 +131,7 @@ LightSet::LightSet(const rib::Scene& scene, const ShaderSet& shaders) {
     lights_.reserve(scene.lights.size());
     for (const rib::Light& light : scene.lights) {
         LightInfo& info = lights_.emplace_back();
+        info.is_indirect = is_indirect_light(scene, light);
         info.shader = shaders.get(light.shader);
         if (info.shader == nullptr) {
             continue;
@@ -163,6 +165,7 @@ LightList LightSet::list(const rib::Attributes& attributes) const {
     LightList list;
     list.asks_all = attribute_is_0(attributes, "light:choose");
     for (const rib::LightId id : attributes.lights) {
+        list.is_indirect |= id < lights_.size() && lights_[id].is_indirect;
         if (id < lights_.size() && lights_[id].shader != nullptr) {
             (lights_[id].directional ? list.directional : list.ambient).push_back(id);
             list.needs_differences |=

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/lights.h"
 
+#include "tracer/indirect_ambient.h"
 #include "tracer/light_run.h"
 #include "tracer/messages.h"
 #include "tracer/pixel_trace.h"
@@ -214,6 +215,12 @@ void run_ambient(Execution& execution, std::uint32_t first, std::uint32_t mask, 
         execution.subject->lights == nullptr || execution.ray_kind == SL_RAY_shadow) {
         return;
     }
+    if (execution.subject->lights->is_indirect) {
+        mask &= ~indirect_ambient(execution, first, mask, C);
+        if (mask == 0) {
+            return;
+        }
+    }
     for (const rib::LightId id : execution.subject->lights->ambient) {
         LightRun& run = attached(execution, id);
         sl_light_query query = {};
@@ -228,7 +235,8 @@ void run_ambient(Execution& execution, std::uint32_t first, std::uint32_t mask, 
         const LightSample& sample = run.sample(0);
         for (std::uint32_t k = 0; k < 3; ++k) {
             for (std::uint32_t lane = 0; lane < lanes; ++lane) {
-                C[k * lanes + lane] += sample.Cl[k * SL_LANES_MAX + lane];
+                C[k * lanes + lane] +=
+                    (mask >> lane & 1U) != 0 ? sample.Cl[k * SL_LANES_MAX + lane] : 0;
             }
         }
     }

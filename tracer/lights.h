@@ -24,6 +24,7 @@ struct ShaderEntry;
 
 struct LightInfo {
     const ShaderEntry* shader = nullptr; // nullptr: the light is off (missing shader)
+    bool is_indirect = false;            // the light "indirect": no shader
     bool directional = false;            // contains illuminate or solar; else ambient
     bool from_infinity = false;          // contains solar
     bool casts_shadows = false;          // Attribute "light" "shadows" "on"
@@ -41,6 +42,7 @@ struct LightInfo {
 
 // The lights of one attribute state, in declaration order.
 struct LightList {
+    bool is_indirect = false; // the light "indirect" shines: ambient() is what surfaces send
     std::vector<rib::LightId> ambient;
     std::vector<rib::LightId> directional;
     bool needs_differences = false; // some light asks how Ps differs at the auxiliary points

@@ -330,6 +330,9 @@ private:
         case Id::programs:
             o.allow_programs = true;
             break;
+        case Id::check_energy:
+            o.check_energy = true;
+            break;
         case Id::strict:
             o.strict = true;
             break;

@@ -43,6 +43,7 @@ struct RenderOptions {
     std::optional<LiveServers> servers; // --display-server
     bool silent = false, safe = false, verbose = false;
     bool stats = false, allow_programs = false, strict = false;
+    bool check_energy = false;
     bool merge = false; // `files` are tiles
     bool help = false, version = false;
     std::vector<std::string> not_yet; // accepted switches of later issues, as typed

@@ -2,6 +2,7 @@
 #include "tracer/ray_queries.h"
 
 #include "tracer/execution.h"
+#include "tracer/hemisphere.h"
 #include "tracer/ray_levels.h"
 #include "tracer/transmission.h"
 
@@ -57,7 +58,11 @@ void answer_rays(Execution& execution, sl_ray_query& query) {
         deeper.wave().answer({&ask, 1});
         return;
     }
-    default: // occlusion and its like are answered elsewhere: nothing is in the way
+    case SL_RAYS_occlusion:
+    case SL_RAYS_indirect:
+        answer_hemisphere(execution, query);
+        return;
+    default: // transmission and its like are answered elsewhere: nothing is in the way
         miss_all(execution, query);
     }
 }

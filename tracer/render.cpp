@@ -250,6 +250,7 @@ trace::RendererConfig renderer_config(const trace::RenderOptions& options,
     config.settings.is_verbose = options.verbose;
     config.settings.keep_existing = options.safe;
     config.settings.trace_pixels = options.trace_pixels;
+    config.settings.check_energy = options.check_energy;
     config.settings.checkpoint = options.checkpoint;
     config.keep_previews = !options.report.empty();
     config.is_verbose = options.verbose;

@@ -329,6 +329,9 @@ uint32_t bake(void* engine, const sl_point_query* query) {
     if (execution.frame.textures == nullptr || execution.thread == nullptr) {
         return 0;
     }
+    if (execution.thread->wanted != nullptr) {
+        return query->mask; // a rehearsal
+    }
     const std::uint32_t taken = execution.frame.textures->textures().points().add(
         *query, file_from_current(execution, query->space));
     if (taken == 0 && query->mask != 0) {

@@ -3,6 +3,7 @@
 
 #include "tracer/default_surface.h"
 #include "tracer/execution.h"
+#include "tracer/indirect_light.h"
 #include "tracer/services.h"
 #include "tracer/sl_types.h"
 
@@ -195,7 +196,9 @@ ShaderSet::ShaderSet(const ShaderSources& sources)
     }
     load(sources, scene.camera_exterior, SL_SHADER_volume, false);
     for (const rib::Light& light : scene.lights) {
-        load(sources, light.shader, SL_SHADER_light, light.in_camera_space);
+        if (!is_indirect_light(scene, light)) {
+            load(sources, light.shader, SL_SHADER_light, light.in_camera_space);
+        }
     }
     load(sources, scene.options.imager, SL_SHADER_imager, true);
 }

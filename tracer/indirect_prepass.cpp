@@ -70,7 +70,6 @@ std::vector<IndirectPrepass::Step> IndirectPrepass::steps() {
 void IndirectPrepass::shade_row(const Step& step, int y, Worker& w, WantedPoints& wanted) const {
     SampleBlock& block = w.block;
     block = {};
-    block.per_pixel = 1;
     const PixelHash hash(y);
     for (int x = pixels_.x0 + step.x0; x < pixels_.x1; x += step.spacing) {
         block.px.push_back(x);

@@ -131,7 +131,7 @@ struct Setting {
         scene,
         {camera.screen_from_camera(), camera.ndc_from_screen(), camera.raster_from_screen()}};
     Sampler sampler{sampler_settings(scene.options, diag)};
-    std::unique_ptr<geo::World> world = geo::World::build(scene, {camera.view(), 0, 0}, diag);
+    std::unique_ptr<geo::World> world = geo::World::build(scene, {camera.view(), 0, 0, {}}, diag);
 };
 
 std::unique_ptr<Film> new_film(Setting& s, const FilterWeights& weights) {

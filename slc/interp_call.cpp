@@ -38,7 +38,8 @@ void Interpreter::call_at(const Stmt& s, const Mask& mask, int point) {
         f(args, result);
     } else if (!lighting(s, point, result) && !spaces(s, point, args, result) &&
                !area(s, mask, point, result) && !text(s, point, result) &&
-               !shadeop(s, point, args) && !rays(s, point, args, result) && !state(s, point, args, result)) {
+               !shadeop(s, point, args) && !rays(s, point, args, result) &&
+               !state(s, point, args, result)) {
         fallback(s, point, result);
     }
     if (director_ != nullptr && !is_known) {

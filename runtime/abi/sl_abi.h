@@ -231,8 +231,8 @@ typedef struct sl_ray_channel {
 } sl_ray_channel;
 
 /* Rays of one packet: the question, then the answer. Where a shader may wait, it stands in its
- * frame and the shader returns SL_SUSPENDED; elsewhere the service `rays` answers at once. Planes of
- * `lanes`; points and directions are in current space, directions need not be unit. */
+ * frame and the shader returns SL_SUSPENDED; elsewhere the service `rays` answers at once. Planes
+ * of `lanes`; points and directions are in current space, directions need not be unit. */
 typedef struct sl_ray_query {
     int32_t kind; /* SL_RAYS_* */
     uint32_t first, lanes, mask;
@@ -250,9 +250,9 @@ typedef struct sl_ray_query {
     int32_t num_channels;
     sl_ray_channel channel[SL_RAY_CHANNELS_MAX];
 
-    uint32_t hit;                  /* lanes whose ray met a surface */
-    float C[3 * SL_LANES_MAX];     /* colour, transmission; a number in the first plane */
-    float distance[SL_LANES_MAX];  /* in units of length; 1e30 where nothing was hit */
+    uint32_t hit;                 /* lanes whose ray met a surface */
+    float C[3 * SL_LANES_MAX];    /* colour, transmission; a number in the first plane */
+    float distance[SL_LANES_MAX]; /* in units of length; 1e30 where nothing was hit */
     float Phit[3 * SL_LANES_MAX], Nhit[3 * SL_LANES_MAX];
     float Pmiss[3 * SL_LANES_MAX], Rmiss[3 * SL_LANES_MAX];
     float level_missed[SL_LANES_MAX]; /* level of the deepest ray that missed; 0: none did */

@@ -19,9 +19,8 @@ std::uint32_t Execution::lanes() const {
 }
 
 void report_suspended(const Execution& execution) {
-    report_shader(
-        execution, base::Severity::Warning, 0,
-        "uses rays or textures, which are not available yet; what follows them is not computed");
+    report_shader(execution, base::Severity::Warning, 0,
+                  "waits for rays where none can be traced; what follows is not computed");
 }
 
 void report_shader(const Execution& execution, base::Severity severity, int line,

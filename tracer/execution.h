@@ -115,6 +115,7 @@ struct RaySubject {
     int kind = SL_RAY_camera; // SL_RAY_*
     int diffuse_level = 0;    // diffuse rays among those before
     std::span<const std::uint32_t> seeds;
+    std::span<const float> lengths;         // of the rays, in units of length
     std::span<const float> spread;          // growth of the footprint per unit of length
     std::span<const std::uint32_t> media;   // media.h: what the ray came through
     std::span<const sl_string> labels;      // null: none was given
@@ -164,8 +165,8 @@ public:
     [[nodiscard]] std::uint32_t lanes() const;
 };
 
-// The shader waits for something the engine does not answer yet (rays, textures): reported once;
-// its points keep the values they have.
+// The shader waits where nobody answers (a light, an imager, parameters): reported once; its points
+// keep the values they have.
 void report_suspended(const Execution& execution);
 
 // A message about the running shader, once per shader and text. Line 0: the place of the call;

@@ -173,6 +173,9 @@ void HitShader::finish(ShadeJob& job) {
 void HitShader::finish_waiting() {
     while (!waiting_.empty()) {
         thread_.counters.add(Counter::ray_rounds);
+        if (frame_.interrupted != nullptr && frame_.interrupted()) {
+            thread_.is_abandoned = true;
+        }
         thread_.levels->answer(waiting_);
         std::size_t kept = 0;
         for (ShadeJob* job : waiting_) {
@@ -204,6 +207,7 @@ void HitShader::gather(ShadeJob& job, NeededVariables needed) const {
     for (std::size_t i = 0; needs_footprint && i < job.members.size(); ++i) {
         gather_footprint(job, i);
     }
+    job.subject.rays.lengths = {job.length.data(), job.members.size()};
     job.subject.rays.spread = needs_footprint
                                   ? std::span<const float>(job.spread.data(), job.members.size())
                                   : std::span<const float>();
@@ -216,12 +220,15 @@ void HitShader::gather_origins(ShadeJob& job) const {
         const std::size_t lane = ray % geo::RayPacket::size;
         job.ox[i] = packet.ox[lane], job.oy[i] = packet.oy[lane], job.oz[i] = packet.oz[lane];
         job.dx[i] = packet.dx[lane], job.dy[i] = packet.dy[lane], job.dz[i] = packet.dz[lane];
+        const float t = job.hits.empty() ? 0 : distance_of(job, i);
+        job.length[i] =
+            t * std::sqrt(job.dx[i] * job.dx[i] + job.dy[i] * job.dy[i] + job.dz[i] * job.dz[i]);
     }
 }
 
 void HitShader::gather_footprint(ShadeJob& job, std::size_t i) const {
-    const std::uint32_t member = job.members[i], ray = ray_of(member);
-    const float t = rays_.t.empty() ? job.hits[i].t : rays_.t[member];
+    const std::uint32_t ray = ray_of(job.members[i]);
+    const float t = distance_of(job, i);
     if (!rays_.cones.empty()) {
         const RayCone& cone = rays_.cones[ray];
         job.footprint[i] = cone.width(t);
@@ -232,8 +239,7 @@ void HitShader::gather_footprint(ShadeJob& job, std::size_t i) const {
     const float spacing_px =
         classes_.facts(frame_.world->binding(job.hits[i]).attributes).spacing_px;
     job.footprint[i] = camera_.footprint(job.oz[i] + t * job.dz[i], spacing_px);
-    const float length =
-        t * std::sqrt(job.dx[i] * job.dx[i] + job.dy[i] * job.dy[i] + job.dz[i] * job.dz[i]);
+    const float length = job.length[i];
     job.spread[i] = camera_.perspective() && length > 0 ? job.footprint[i] / length : 0;
     job.widening[i] = 1;
 }
@@ -257,7 +263,9 @@ void HitShader::gather_hits(ShadeJob& job) const {
 void HitShader::prepare_surface(ShadeJob& job) {
     const ShadingClass& c = class_of(job);
     rt::ShadeBatch& batch = job.surface;
-    const rt::ShaderInstance& instance = c.surface->current();
+    const bool is_sent_to = observer_ != nullptr && observer_->sends();
+    // Special instances have their parameters no more.
+    const rt::ShaderInstance& instance = is_sent_to ? *c.surface->instance : c.surface->current();
     batch.begin(instance, job.count());
     job.subject.surface = {c.surface, &batch};
     job.stride = batch.stride();
@@ -291,6 +299,9 @@ void HitShader::prepare_surface(ShadeJob& job) {
     fill_own_variables(batch);
     fill_seeds(job, batch);
     bind_overrides(job, Stage::Surface, batch);
+    if (is_sent_to) {
+        observer_->starting(job);
+    }
 }
 
 // Lights may need how the points they light differ, whether the surface does or not.

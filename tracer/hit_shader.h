@@ -49,6 +49,9 @@ struct ShadingRays {
 class ShadeObserver {
 public:
     virtual ~ShadeObserver() = default;
+    // The surface's parameters are bound, its shader has not run. Only if sends().
+    virtual void starting(ShadeJob& /*job*/) {}
+    [[nodiscard]] virtual bool sends() const { return false; }
     virtual void finished(ShadeJob& job) = 0;
 };
 
@@ -169,6 +172,10 @@ private:
     }
     [[nodiscard]] std::uint32_t ray_of(std::uint32_t hit) const {
         return rays_.ray.empty() ? hit : rays_.ray[hit];
+    }
+    // Along the ray of a point, in units of its direction.
+    [[nodiscard]] float distance_of(const ShadeJob& job, std::size_t point) const {
+        return rays_.t.empty() ? job.hits[point].t : rays_.t[job.members[point]];
     }
     [[nodiscard]] MediumId medium_of(std::uint32_t hit) const {
         return rays_.media.empty() ? 0 : rays_.media[hit];

@@ -39,7 +39,15 @@ void HitShader::run_volume(ShadeJob& job) {
     if (Oi != nullptr) {
         std::copy_n(job.Oi, 3 * job.stride, Oi);
     }
+    // Inside of a solid its lights count, not those of what lies in it or shows through it.
+    const LightList* const lights = job.subject.lights;
+    const std::uint32_t solid =
+        rays_.media.empty() ? rib::none : thread_.levels->media().attributes(job.media[0]);
+    if (solid != rib::none) {
+        job.subject.lights = &classes_[classes_.facts(solid).shading_class].lights;
+    }
     run(job, batch, execution);
+    job.subject.lights = lights;
     thread_.counters.add(Counter::points_volume, job.count());
     job.Ci = Ci != nullptr ? Ci : job.Ci;
     job.Oi = Oi != nullptr ? Oi : job.Oi;

@@ -19,9 +19,17 @@ Media::Media(const rib::Scene& scene) : scene_(scene) {
     any_ = open.volume != rib::none || std::ranges::any_of(scene.attributes, bounds_media);
 }
 
-MediumId Media::find_solid(MediumId from, rib::ShaderId interior) const {
+// Calls with equal parameters are one: exporters repeat them surface by surface.
+rib::ShaderId Media::solid_of(std::uint32_t attributes) const {
+    const rib::ShaderId interior = scene_.attributes[attributes].interior;
+    const rib::ShaderId same =
+        interior < scene_.shaders.size() ? scene_.shaders[interior].same_params_as : rib::none;
+    return same != rib::none ? same : interior;
+}
+
+MediumId Media::find_solid(MediumId from, rib::ShaderId solid) const {
     for (MediumId id = from; all_[id].is_inside; id = all_[id].outer) {
-        if (all_[id].solid == interior) {
+        if (all_[id].solid == solid) {
             return id;
         }
     }
@@ -30,9 +38,14 @@ MediumId Media::find_solid(MediumId from, rib::ShaderId interior) const {
 
 // A ray that stays inside (total reflection) keeps what it was entered from.
 Media::Medium Media::entered(MediumId from, std::uint32_t attributes) const {
-    const rib::ShaderId interior = scene_.attributes[attributes].interior;
-    const MediumId known = find_solid(from, interior);
-    Medium medium{interior, attributes, true, interior, from, all_[from].depth + 1};
+    const rib::ShaderId solid = solid_of(attributes);
+    const MediumId known = find_solid(from, solid);
+    Medium medium{scene_.attributes[attributes].interior,
+                  attributes,
+                  true,
+                  solid,
+                  from,
+                  all_[from].depth + 1};
     if (known != no_medium) {
         medium.outer = all_[known].outer;
         medium.depth = all_[known].depth;
@@ -45,7 +58,7 @@ Media::Medium Media::entered(MediumId from, std::uint32_t attributes) const {
 
 Media::Medium Media::left(MediumId from, std::uint32_t attributes) const {
     const rib::Attributes& surface = scene_.attributes[attributes];
-    const MediumId known = find_solid(from, surface.interior);
+    const MediumId known = find_solid(from, solid_of(attributes));
     Medium medium = all_[known != no_medium ? all_[known].outer : from];
     if (surface.exterior != rib::none) {
         medium.volume = surface.exterior;

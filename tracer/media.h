@@ -48,7 +48,8 @@ private:
     [[nodiscard]] Medium entered(MediumId from, std::uint32_t attributes) const;
     [[nodiscard]] Medium left(MediumId from, std::uint32_t attributes) const;
     // The medium within which the solid with this Interior was entered; no_medium: it was not.
-    [[nodiscard]] MediumId find_solid(MediumId from, rib::ShaderId interior) const;
+    [[nodiscard]] MediumId find_solid(MediumId from, rib::ShaderId solid) const;
+    [[nodiscard]] rib::ShaderId solid_of(std::uint32_t attributes) const;
     static constexpr MediumId no_medium = ~0U;
 
     const rib::Scene& scene_;

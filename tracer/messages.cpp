@@ -2,6 +2,7 @@
 #include "tracer/messages.h"
 
 #include "tracer/execution.h"
+#include "tracer/ray_levels.h"
 #include "tracer/shader_set.h"
 #include "tracer/sl_types.h"
 #include "tracer/state_queries.h"
@@ -161,23 +162,143 @@ std::uint32_t from_geometry(const Execution& execution, const MessageQuery& quer
     return query.mask;
 }
 
-// The volumes of the two sides: Exterior outside, or the Atmosphere where there is none; Interior
-// inside.
-std::uint32_t from_volume(const Execution& execution, const MessageQuery& query) {
-    if (execution.subject == nullptr) {
-        return 0;
-    }
+// The volumes of the two sides of a surface that a ray met.
+struct Sides {
+    const ShaderEntry* incident = nullptr; // where the ray came through
+    const ShaderEntry* opposite = nullptr;
+};
+
+// What the ray came through says more than the surface: it may be inside of other solids.
+Sides sides_in_medium(const Execution& execution, std::size_t point, bool from_outside) {
+    const BatchSubject& subject = *execution.subject;
+    Media& media = execution.thread->levels->media();
+    const MediumId here = subject.rays.media[point];
+    const std::uint32_t attributes = execution.frame.world->binding(subject.hits[point]).attributes;
+    const ShaderSet& shaders = *execution.frame.shaders;
+    return {shaders.get(media.volume(here)),
+            shaders.get(media.volume(media.behind(here, attributes, from_outside)))};
+}
+
+// Outside is the Exterior, or the Atmosphere where there is none; inside is the Interior.
+Sides sides_of_surface(const Execution& execution, bool from_outside) {
     const ShaderEntry* exterior = bound_shader(execution, &rib::Attributes::exterior);
     if (exterior == nullptr) {
         exterior = bound_shader(execution, &rib::Attributes::atmosphere);
     }
     const ShaderEntry* interior = bound_shader(execution, &rib::Attributes::interior);
+    return from_outside ? Sides{exterior, interior} : Sides{interior, exterior};
+}
+
+std::uint32_t from_volume(const Execution& execution, const MessageQuery& query) {
+    if (execution.subject == nullptr) {
+        return 0;
+    }
+    const BatchSubject& subject = *execution.subject;
     const std::uint32_t outside = facing_of(execution, query).outside;
-    const bool is_incident = query.kind == SL_MESSAGE_incident;
-    MessageQuery of_exterior = query, of_interior = query;
-    of_exterior.mask = is_incident ? outside : query.mask & ~outside;
-    of_interior.mask = query.mask & ~of_exterior.mask;
-    return param_of_instance(of_exterior, exterior) | param_of_instance(of_interior, interior);
+    std::uint32_t set = 0;
+    for (std::uint32_t rest = query.mask; rest != 0; rest &= rest - 1) {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(rest));
+        const std::size_t point = subject_index(execution, query) + lane;
+        const bool from_outside = (outside >> lane & 1U) != 0;
+        const bool is_in_medium = point < subject.rays.media.size() &&
+                                  point < subject.hits.size() && subject.rays.media[point] != 0;
+        const Sides sides = is_in_medium ? sides_in_medium(execution, point, from_outside)
+                                         : sides_of_surface(execution, from_outside);
+        MessageQuery of_lane = query;
+        of_lane.mask = 1U << lane;
+        set |= param_of_instance(of_lane, query.kind == SL_MESSAGE_incident ? sides.incident
+                                                                            : sides.opposite);
+    }
+    return set;
+}
+
+// --- rayinfo()
+
+const char* ray_type(int kind) {
+    switch (kind) {
+    case SL_RAY_reflection:
+        return "specular";
+    case SL_RAY_shadow:
+        return "transmission";
+    case SL_RAY_diffuse:
+        return "diffuse";
+    default:
+        return "camera";
+    }
+}
+
+std::uint32_t ray_text(const Execution& execution, const MessageQuery& query,
+                       std::string_view name) {
+    const RaySubject& rays = execution.subject->rays;
+    const std::size_t at = subject_index(execution, query);
+    sl_string texts[SL_LANES_MAX];
+    for (std::uint32_t lane = 0; lane < SL_LANES_MAX; ++lane) {
+        const bool has_label = at + lane < rays.labels.size() && rays.labels[at + lane] != nullptr;
+        texts[lane] =
+            name == "label" && has_label
+                ? rays.labels[at + lane]
+                : execution.frame.strings.intern(name == "label" ? "" : ray_type(rays.kind));
+    }
+    copy_strings(query, texts, SL_LANES_MAX, 0);
+    return query.mask;
+}
+
+// Levels by kind of ray; negative: not such a name.
+int ray_depth(const RaySubject& rays, std::string_view name) {
+    const int shadow = rays.kind == SL_RAY_shadow ? 1 : 0;
+    return name == "depth"           ? rays.level
+           : name == "diffusedepth"  ? rays.diffuse_level
+           : name == "shadowdepth"   ? shadow
+           : name == "speculardepth" ? rays.level - rays.diffuse_level - shadow
+                                     : -1;
+}
+
+std::uint32_t ray_geometry(const Execution& execution, const MessageQuery& query,
+                           std::string_view name) {
+    const BatchSubject& subject = *execution.subject;
+    const geo::Incident& ray = subject.incident;
+    const std::size_t at = subject_index(execution, query);
+    if (ray.ox.size() <= at) {
+        return 0;
+    }
+    float planes[3 * SL_LANES_MAX] = {};
+    for (std::size_t lane = 0; lane < SL_LANES_MAX && at + lane < ray.ox.size(); ++lane) {
+        const std::size_t i = at + lane;
+        const base::V3f origin(ray.ox[i], ray.oy[i], ray.oz[i]);
+        const base::V3f direction(ray.dx[i], ray.dy[i], ray.dz[i]);
+        const float length = i < subject.rays.lengths.size() ? subject.rays.lengths[i] : 0;
+        const base::V3f value = name == "origin"      ? origin
+                                : name == "direction" ? base::normalize(direction)
+                                                      : base::V3f(length, 0, 0);
+        for (int k = 0; k < 3; ++k) {
+            planes[static_cast<std::size_t>(k) * SL_LANES_MAX + lane] = value[k];
+        }
+    }
+    copy_floats(query, planes, SL_LANES_MAX, 0);
+    return query.mask;
+}
+
+// Of the ray that found the point.
+std::uint32_t from_ray(const Execution& execution, const MessageQuery& query) {
+    if (execution.subject == nullptr || query.array_length > 0) {
+        return 0;
+    }
+    const std::string_view name = query.name;
+    if (query.type == SL_TYPE_string) {
+        return name == "type" || name == "label" ? ray_text(execution, query, name) : 0;
+    }
+    const bool is_point = name == "origin" || name == "direction";
+    if ((is_point && types_agree(query.type, SL_TYPE_point)) ||
+        (name == "length" && query.type == SL_TYPE_float)) {
+        return ray_geometry(execution, query, name);
+    }
+    const int depth = ray_depth(execution.subject->rays, name);
+    if (depth < 0 || query.type != SL_TYPE_float) {
+        return 0;
+    }
+    const auto value = static_cast<float>(depth);
+    copy_floats(query, &value, 0, 0);
+    return query.mask;
 }
 
 std::uint32_t from_state(const Execution& execution, const MessageQuery& query,
@@ -254,6 +375,8 @@ std::uint32_t answer_message(const Execution& execution, const MessageQuery& que
     case SL_MESSAGE_incident:
     case SL_MESSAGE_opposite:
         return from_volume(execution, query);
+    case SL_MESSAGE_ray:
+        return from_ray(execution, query);
     case SL_MESSAGE_attribute:
         return from_attributes(execution, query);
     case SL_MESSAGE_option:

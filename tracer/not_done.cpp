@@ -24,8 +24,6 @@ public:
 
     void attributes(const rib::Attributes& a) {
         displacement(a);
-        shader("Interior", a.interior, "no rays pass through volumes in this version; ignored");
-        shader("Exterior", a.exterior, "no rays pass through volumes in this version; ignored");
     }
 
     // Without these attributes BMRT bumps normals only, too.

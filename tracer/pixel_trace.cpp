@@ -103,10 +103,12 @@ void PixelTrace::ray(std::uint32_t sample, const geo::RayPacket& packet, std::si
          ray_title(level, s->num_hits == 0) + " from " + numbers_text(origin) + " along " +
              numbers_text(direction) + ", t " + number_text(packet.tnear[lane]) + " to " +
              number_text(packet.tfar[lane]));
-    s->is_hit = hit.valid();
+    if (level == 0) {
+        s->is_hit = hit.valid();
+        s->num_hits += hit.valid() ? 1 : 0;
+    }
     if (hit.valid()) {
-        ++s->num_hits;
-        describe_hit(*s, packet, lane, hit);
+        describe_hit(*s, packet, lane, hit, level);
     } else {
         line(s->text, at_ray, "meets nothing");
     }
@@ -137,7 +139,7 @@ std::string PixelTrace::primitive_title(const geo::Hit& hit) const {
 
 // Where it is, by the function that fills shader variables.
 void PixelTrace::describe_hit(SampleText& to, const geo::RayPacket& packet, std::size_t lane,
-                              const geo::Hit& hit) {
+                              const geo::Hit& hit, int level) {
     constexpr std::uint32_t stride = 8;
     const auto one = [&](const float* values) { return std::span<const float>(values + lane, 1); };
     const float footprint = 0;
@@ -155,7 +157,8 @@ void PixelTrace::describe_hit(SampleText& to, const geo::RayPacket& packet, std:
     const auto value = [&](std::size_t i) {
         return base::V3f(planes[i][0], planes[i][stride], planes[i][2 * stride]);
     };
-    line(to.text, at_ray, "hit " + std::to_string(to.num_hits) + ": " + primitive_title(hit));
+    const std::string number = level == 0 ? " " + std::to_string(to.num_hits) : std::string();
+    line(to.text, at_ray, "hit" + number + ": " + primitive_title(hit));
     line(to.text, at_hit,
          "t " + number_text(hit.t) + ", u " + number_text(planes[3][0]) + ", v " +
              number_text(planes[4][0]) + ", part " + std::to_string(hit.part));
@@ -225,6 +228,15 @@ void PixelTrace::after_shader(const Execution& execution, rt::ShadeBatch& batch)
                          parameter_text(batch, p, i));
             }
         }
+    }
+}
+
+void PixelTrace::answered(std::uint32_t sample, const ShaderEntry& shader, const Answer& answer) {
+    if (SampleText* s = of_sample(sample)) {
+        line(s->text, at_shader,
+             "rays answer shader " + quoted(shader.name) + " at level " +
+                 std::to_string(answer.level) + ": color " + numbers_text(answer.color) +
+                 ", distance " + number_text(answer.distance));
     }
 }
 

@@ -42,6 +42,13 @@ public:
     void ambient(rib::LightId id, rt::ShadeBatch& batch, std::uint32_t first, std::uint32_t mask);
     // passes: 3 planes of 8, the light that is left.
     void shadow_rays(std::uint32_t first, const geo::RayPacket& rays, const float* passes);
+    // What the rays answered that a point of `shader` asked for.
+    struct Answer {
+        std::span<const float> color;
+        float distance = 0;
+        int level = 0; // of the point
+    };
+    void answered(std::uint32_t sample, const ShaderEntry& shader, const Answer& answer);
     // printf of a point, or of uniform values in a packet.
     void printed(std::uint32_t point, std::string_view text);
     void printed_uniform(std::uint32_t first, std::uint32_t lanes, std::string_view text);
@@ -70,7 +77,7 @@ private:
     [[nodiscard]] SampleText* of_sample(std::uint32_t sample);
     [[nodiscard]] SampleText* of_point(std::size_t point);
     void describe_hit(SampleText& to, const geo::RayPacket& packet, std::size_t lane,
-                      const geo::Hit& hit);
+                      const geo::Hit& hit, int level);
     void tell_light(SampleText& to, rib::LightId id, rt::ShadeBatch& batch, std::uint32_t lane,
                     const std::string& result);
     [[nodiscard]] std::string place(base::SourcePos pos) const;

@@ -80,6 +80,8 @@ private:
         MediumId medium;
         std::array<float, 3> transmitted;
     };
+    void starting(ShadeJob& job) override { observer_->starting(job); }
+    [[nodiscard]] bool sends() const override { return observer_ != nullptr && observer_->sends(); }
     void finished(ShadeJob& job) override;
     void trace_first();
     void trace_behind();

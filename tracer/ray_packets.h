@@ -26,6 +26,8 @@ inline void set_ray(geo::RayPacket& to, std::size_t lane, const PlainRay& ray) {
     to.active |= 1U << lane;
 }
 
+// Variables at one hit that do not depend on the ray: planes of SL_LANES_MAX floats, lane 0.
+void fill_one(const geo::World& world, const geo::Hit& hit, const sl_points& points);
 // Ng of the undisplaced surface.
 [[nodiscard]] base::V3f geometric_normal(const geo::World& world, const geo::Hit& hit);
 

@@ -2,16 +2,19 @@
 #include "tracer/ray_wave.h"
 
 #include "tracer/pixel_trace.h"
-#include "tracer/ray_directions.h"
+#include "tracer/ray_channels.h"
 #include "tracer/ray_levels.h"
 #include "tracer/ray_packets.h"
 #include "tracer/ray_queries.h"
+#include "tracer/shader_set.h"
+#include "tracer/texture_frame.h"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 namespace trace {
 
@@ -33,11 +36,12 @@ void put(float* planes, std::uint32_t lanes, std::uint32_t lane, const V3f& v) {
 
 bool is_shaded(const sl_ray_query& query) {
     return query.kind == SL_RAYS_trace || query.kind == SL_RAYS_fulltrace ||
-           query.kind == SL_RAYS_gather;
+           (query.kind == SL_RAYS_gather && asks_for_shading(query));
 }
 
 bool is_mine(const sl_ray_query& query) {
-    return is_shaded(query) || query.kind == SL_RAYS_hittest;
+    return query.kind == SL_RAYS_trace || query.kind == SL_RAYS_fulltrace ||
+           query.kind == SL_RAYS_gather || query.kind == SL_RAYS_hittest;
 }
 
 bool has_text(sl_string text) {
@@ -133,7 +137,12 @@ void RayWave::add_rays(std::uint32_t ask) {
     filter_ = filter;
     shades_ = shades;
     for (std::uint32_t rest = query.mask; rest != 0; rest &= rest - 1) {
-        add_lane(ask, static_cast<std::uint32_t>(std::countr_zero(rest)));
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(rest));
+        if (!rays_.empty() &&
+            !sends_alike(query, lane, *asks_[rays_.back().ask].query, rays_.back().lane)) {
+            flush();
+        }
+        add_lane(ask, lane);
     }
 }
 
@@ -152,65 +161,80 @@ RayWave::Place RayWave::place_of(const RayAsk& ask, std::uint32_t lane) const {
     return place;
 }
 
+RayWave::Cone RayWave::cone_of(const sl_ray_query& query, std::uint32_t lane,
+                               const Place& place) const {
+    const bool is_gather = query.kind == SL_RAYS_gather;
+    const V3d D(get(query.D, query.lanes, lane));
+    const double length = base::length(D);
+    const sl_string distribution = query.text[SL_RAY_TEXT_distribution];
+    Cone cone;
+    cone.axis = D / length;
+    cone.half_angle = static_cast<double>(is_gather ? query.angle[lane]
+                                                    : query.option[SL_RAY_OPTION_samplecone][lane]);
+    cone.samples = num_samples(query, lane);
+    cone.which.seed = seed_of(place.seed, V3f(cone.axis), 0);
+    cone.which.samples = is_gather ? std::max(query.samples, 1) : cone.samples;
+    cone.which.shift = query.option[SL_RAY_OPTION_samplebase][lane];
+    const bool is_cosine =
+        has_text(distribution) ? std::string_view(distribution) == "cosine" : is_gather;
+    cone.which.distribution = is_cosine ? ConeDistribution::Cosine : ConeDistribution::Uniform;
+    cone.width = width(query, lane, place, cone.axis, length);
+    if (cone.half_angle > 0) {
+        const double solid_angle = cone_solid_angle(cone.half_angle) / cone.which.samples;
+        cone.width.widen(static_cast<float>(std::sqrt(solid_angle)));
+    }
+    return cone;
+}
+
 void RayWave::add_lane(std::uint32_t ask_index, std::uint32_t lane) {
     const RayAsk& ask = asks_[ask_index];
     const sl_ray_query& query = *ask.query;
-    const V3d D(get(query.D, query.lanes, lane));
-    const double length = base::length(D);
     const Place place = place_of(ask, lane);
-    const std::uint32_t attributes =
-        place.hit != nullptr ? frame_.world->binding(*place.hit).attributes : rib::none;
-    const RaySubject rays =
-        ask.execution->subject != nullptr ? ask.execution->subject->rays : RaySubject{};
+    const double length = base::length(V3d(get(query.D, query.lanes, lane)));
     if (!(length > 0) || !std::isfinite(length) ||
         !std::isfinite(base::length(get(query.P, query.lanes, lane)))) {
         return; // no direction, or no number: nothing is met
     }
-    if (shades_ &&
-        !thread_.levels->options().allows(attributes, rays.level + 1, rays.diffuse_level)) {
+    const std::uint32_t attributes =
+        place.hit != nullptr ? frame_.world->binding(*place.hit).attributes : rib::none;
+    const RaySubject* rays =
+        place.execution->subject != nullptr ? &place.execution->subject->rays : nullptr;
+    const int level = place.execution->ray_level + 1;
+    if (shades_ && !thread_.levels->options().allows(attributes, level,
+                                                     rays != nullptr ? rays->diffuse_level : 0)) {
         too_deep(ask, lane);
         return;
     }
-    const V3d axis = D / length;
-    const int samples = num_samples(query, lane);
-    const bool is_gather = query.kind == SL_RAYS_gather;
-    const double angle = static_cast<double>(
-        is_gather ? query.angle[lane] : query.option[SL_RAY_OPTION_samplecone][lane]);
-    ConeSample which;
-    which.seed = seed_of(place.seed, V3f(axis), 0);
-    which.samples = is_gather ? std::max(query.samples, 1) : samples;
-    which.shift = query.option[SL_RAY_OPTION_samplebase][lane];
-    const sl_string distribution = query.text[SL_RAY_TEXT_distribution];
-    which.distribution = has_text(distribution) ? (std::string_view(distribution) == "cosine"
-                                                       ? ConeDistribution::Cosine
-                                                       : ConeDistribution::Uniform)
-                         : is_gather            ? ConeDistribution::Cosine
-                                                : ConeDistribution::Uniform;
-    RayCone wide = cone(query, lane, place, axis, length);
-    if (angle > 0) {
-        wide.widen(static_cast<float>(std::sqrt(cone_solid_angle(angle) / which.samples)));
+    const Cone cone = cone_of(query, lane, place);
+    Ray ray;
+    ray.ask = ask_index;
+    ray.lane = lane;
+    ray.of_sample =
+        rays != nullptr && place.point < rays->samples.size() ? rays->samples[place.point] : ~0U;
+    for (int s = 0; s < cone.samples; ++s) {
+        ray.number = query.kind == SL_RAYS_gather ? query.sample : s;
+        add_ray(place, cone, ray);
     }
-    const float farthest = query.option[SL_RAY_OPTION_maxdist][lane];
-    for (int s = 0; s < samples; ++s) {
-        which.sample = is_gather ? query.sample : s;
-        const V3d d = angle > 0 ? cone_direction(axis, angle, which) : axis;
-        Ray ray;
-        const V3f direction(d);
-        ray.ray = {origin(ask, lane, place, direction), direction,
-                   farthest < very_far && farthest > 0 ? farthest
-                                                       : std::numeric_limits<float>::infinity(),
-                   place.hit != nullptr ? place.hit->time : frame_.spaces.shutter_open(),
-                   geo::ReflectionRay};
-        ray.cone = wide;
-        ray.medium = medium(place, direction);
-        ray.ask = ask_index;
-        ray.lane = lane;
-        ray.seed = seed_of(place.seed, direction, static_cast<std::uint32_t>(which.sample));
-        ray.sample = place.point < rays.samples.size() ? rays.samples[place.point] : ~0U;
-        rays_.push_back(ray);
-        if (rays_.size() >= max_rays) {
-            flush();
-        }
+}
+
+void RayWave::add_ray(const Place& place, const Cone& cone, Ray ray) {
+    const RayAsk& ask = asks_[ray.ask];
+    ConeSample which = cone.which;
+    which.sample = ray.number;
+    const V3f direction(cone.half_angle > 0 ? cone_direction(cone.axis, cone.half_angle, which)
+                                            : cone.axis);
+    const float farthest = ask.query->option[SL_RAY_OPTION_maxdist][ray.lane];
+    const bool is_limited = farthest > 0 && farthest < very_far;
+    ray.ray = {origin(ask, ray.lane, place, direction), direction,
+               is_limited ? farthest : std::numeric_limits<float>::infinity(),
+               place.hit != nullptr ? place.hit->time : frame_.spaces.shutter_open(),
+               geo::ReflectionRay};
+    ray.cone = cone.width;
+    ray.medium = medium(place, direction);
+    ray.seed = seed_of(place.seed, direction, static_cast<std::uint32_t>(ray.number));
+    rays_.push_back(ray);
+    if (rays_.size() >= max_rays) {
+        flush();
     }
 }
 
@@ -221,7 +245,7 @@ void RayWave::too_deep(const RayAsk& ask, std::uint32_t lane) {
     const int level = ask.execution->ray_level + 1;
     query.level_missed[lane] = static_cast<float>(level);
     put(query.Pmiss, query.lanes, lane, get(query.P, query.lanes, lane));
-    put(query.Rmiss, query.lanes, lane, get(query.D, query.lanes, lane));
+    put(query.Rmiss, query.lanes, lane, base::normalize(get(query.D, query.lanes, lane)));
 }
 
 // Rays from the point that is shaded start outside its rounding error; points that shaders made up
@@ -254,8 +278,8 @@ V3f RayWave::origin(const RayAsk& ask, std::uint32_t lane, const Place& place,
 }
 
 // Where the shader knows no differences the ray goes on as wide as the one that came.
-RayCone RayWave::cone(const sl_ray_query& query, std::uint32_t lane, const Place& place,
-                      const V3d& direction, double length) const {
+RayCone RayWave::width(const sl_ray_query& query, std::uint32_t lane, const Place& place,
+                       const V3d& direction, double length) const {
     const auto triple = [&](const float* planes) { return V3d(get(planes, query.lanes, lane)); };
     const RayCone cone = RayCone::from(direction, triple(query.P_u), triple(query.P_v),
                                        triple(query.D_u) / length, triple(query.D_v) / length);
@@ -312,10 +336,17 @@ void RayWave::sort_rays() {
 }
 
 void RayWave::flush() {
-    if (rays_.empty()) {
+    if (rays_.empty() || thread_.is_abandoned) {
+        rays_.clear();
         return;
     }
     sort_rays();
+    has_channels_ = is_sending_ = false;
+    for (const Ray& ray : rays_) {
+        const sl_ray_query& query = *asks_[ray.ask].query;
+        has_channels_ |= query.num_channels > 0;
+        is_sending_ |= query.num_channels > 0 && trace::sends(query);
+    }
     const std::size_t count = rays_.size();
     packets_.assign((count + lanes_of_packet - 1) / lanes_of_packet, {});
     seeds_.resize(count);
@@ -328,7 +359,7 @@ void RayWave::flush() {
         set_ray(packets_[slot / lanes_of_packet], slot % lanes_of_packet, ray.ray);
         seeds_[slot] = ray.seed;
         cones_[slot] = ray.cone;
-        samples_[slot] = ray.sample;
+        samples_[slot] = ray.of_sample;
         media_[slot] = ray.medium;
         labels_[slot] = asks_[ray.ask].query->text[SL_RAY_TEXT_label];
     }
@@ -364,7 +395,7 @@ void RayWave::trace(bool shaded) {
     colors_.assign(rays_.size(), Sample{});
     misses_.assign(rays_.size(), DeepestMiss{});
     if (shaded) {
-        layers_.trace(bundle, {colors_, {}, first_, misses_});
+        layers_.trace(bundle, {colors_, {}, first_, misses_}, has_channels_ ? this : nullptr);
     } else {
         layers_.intersect(bundle, first_);
         thread_.counters.add(Counter::rays_probe, rays_.size());
@@ -373,16 +404,38 @@ void RayWave::trace(bool shaded) {
 
 // --- answers
 
+// All rays of a wave send the same.
+void RayWave::starting(ShadeJob& job) {
+    const Ray& ray = rays_.front();
+    bind_sent(*asks_[ray.ask].query, ray.lane, job);
+}
+
+// The first surface of each ray has been shaded.
+void RayWave::finished(ShadeJob& job) {
+    for (std::uint32_t i = 0; layers_.layer() == 0 && i < job.count(); ++i) {
+        const Ray& ray = rays_[order_[layers_.ray_of(job.members[i])]];
+        read_shaded(*asks_[ray.ask].query, ray.lane, job, i);
+    }
+}
+
 void RayWave::fold(const Ray& ray, std::size_t slot) {
-    const RayAsk& ask = asks_[ray.ask];
-    sl_ray_query& query = *ask.query;
+    sl_ray_query& query = *asks_[ray.ask].query;
     const std::uint32_t lanes = query.lanes, lane = ray.lane;
     const auto share = 1 / static_cast<float>(num_samples(query, lane));
+    const Sample& seen = colors_[slot];
+    const bool sees_map = has_text(query.text[SL_RAY_TEXT_environmentmap]);
+    const base::Color beyond =
+        sees_map && misses_[slot].level > 0 ? environment(ray) : base::Color();
+    const float behind[] = {beyond.r, beyond.g, beyond.b};
     for (std::uint32_t k = 0; k < 3; ++k) {
-        query.C[k * lanes + lane] += share * colors_[slot].color[k];
+        query.C[k * lanes + lane] +=
+            share * (seen.color[k] + (sees_map ? (1 - seen.opacity[k]) * behind[k] : 0));
     }
     if (first_[slot].valid()) {
         fold_hit(ray, first_[slot]);
+    }
+    if (query.num_channels > 0) {
+        fold_channels(ray, slot);
     }
     const DeepestMiss& miss = misses_[slot];
     if (static_cast<float>(miss.level) <= query.level_missed[lane]) {
@@ -391,6 +444,49 @@ void RayWave::fold(const Ray& ray, std::size_t slot) {
     query.level_missed[lane] = static_cast<float>(miss.level);
     put(query.Pmiss, lanes, lane, {miss.origin[0], miss.origin[1], miss.origin[2]});
     put(query.Rmiss, lanes, lane, {miss.direction[0], miss.direction[1], miss.direction[2]});
+}
+
+void RayWave::fold_channels(const Ray& ray, std::size_t slot) {
+    sl_ray_query& query = *asks_[ray.ask].query;
+    const geo::Hit& hit = first_[slot];
+    read_ray(query, ray.lane, {ray.ray.origin, ray.ray.direction, hit.valid() ? hit.t : very_far});
+    if (!hit.valid()) {
+        return;
+    }
+    read_hit(query, ray.lane, frame_, hit);
+    if (shades_) {
+        read_color(query, ray.lane, colors_[slot]);
+    }
+}
+
+// "environmentmap": what rays see that meet nothing.
+base::Color RayWave::environment(const Ray& ray) const {
+    const RayAsk& ask = asks_[ray.ask];
+    if (frame_.textures == nullptr) {
+        return {};
+    }
+    const sl_string space = ask.query->text[SL_RAY_TEXT_coordsystem];
+    const Space* named = has_text(space) ? frame_.spaces.find(space) : nullptr;
+    V3d direction(ray.ray.direction);
+    if (named != nullptr) {
+        direction = base::vector(named->space_from_camera, direction);
+    }
+    sl_map_query query = {};
+    query.kind = SL_MAP_environment;
+    query.num_channels = 3;
+    query.lanes = SL_LANES_MAX;
+    query.mask = 1;
+    query.name[0] = ask.query->text[SL_RAY_TEXT_environmentmap];
+    put(query.at, SL_LANES_MAX, 0, V3f(direction));
+    float result[3 * SL_LANES_MAX] = {};
+    thread_.counters.add(Counter::map_environment);
+    frame_.textures->lookup(
+        query, {},
+        [&](const std::string& text) {
+            report_shader(*ask.execution, base::Severity::Error, 0, "map: " + text);
+        },
+        result);
+    return {result[0], result[SL_LANES_MAX], result[2 * SL_LANES_MAX]};
 }
 
 // Distances of several samples that meet something are averaged; the first of them tells where.
@@ -408,8 +504,7 @@ void RayWave::fold_hit(const Ray& ray, const geo::Hit& hit) {
     sl_points points = {};
     points.var[SL_VAR_P] = P;
     points.var[SL_VAR_N] = N;
-    frame_.world->fill({&hit, 1}, {}, 1ULL << SL_VAR_P | 1ULL << SL_VAR_N, SL_LANES_MAX, points,
-                       nullptr, nullptr);
+    fill_one(*frame_.world, hit, points);
     put(query.Phit, lanes, lane, get(P, SL_LANES_MAX, 0));
     put(query.Nhit, lanes, lane, get(N, SL_LANES_MAX, 0));
 }
@@ -424,6 +519,21 @@ void RayWave::end_answer(std::size_t index) {
         if (ask.job != nullptr && query.level_missed[lane] > 0) {
             note_miss(*ask.job, query, lane);
         }
+        if (thread_.trace != nullptr && (query.mask >> lane & 1U) != 0) {
+            tell(ask, lane);
+        }
+    }
+}
+
+// --trace-pixel
+void RayWave::tell(const RayAsk& ask, std::uint32_t lane) const {
+    const Place place = place_of(ask, lane);
+    const BatchSubject* subject = place.execution->subject;
+    if (subject != nullptr && place.point < subject->rays.samples.size()) {
+        const V3f C = get(ask.query->C, ask.query->lanes, lane);
+        const float color[] = {C.x, C.y, C.z};
+        thread_.trace->answered(subject->rays.samples[place.point], ask.execution->running,
+                                {color, ask.query->distance[lane], ask.execution->ray_level});
     }
 }
 

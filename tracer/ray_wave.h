@@ -5,6 +5,7 @@
 // level and thread. Answers do not depend on what is asked together (trace-017).
 #pragma once
 
+#include "tracer/ray_directions.h"
 #include "tracer/ray_layers.h"
 #include "tracer/ray_options.h"
 #include "tracer/ray_packets.h"
@@ -21,7 +22,7 @@ struct RayAsk {
     ShadeJob* job = nullptr; // that waits; null: a shader runs meanwhile
 };
 
-class RayWave {
+class RayWave : private ShadeObserver {
 public:
     // Rays traced and shaded together, at most: bounds memory.
     static constexpr std::size_t max_rays = 8192;
@@ -37,7 +38,9 @@ private:
         PlainRay ray; // unit direction
         RayCone cone;
         MediumId medium = 0;
-        std::uint32_t ask = 0, lane = 0, seed = 0, sample = 0;
+        std::uint32_t ask = 0, lane = 0, seed = 0;
+        int number = 0;                // among those of its lane
+        std::uint32_t of_sample = ~0U; // of the bucket, for --trace-pixel
     };
     // Where a lane stands.
     struct Place {
@@ -46,16 +49,31 @@ private:
         const geo::Hit* hit = nullptr; // null: on no surface
         std::uint32_t seed = 0;
     };
+    // What a lane's rays have in common.
+    struct Cone {
+        base::V3d axis;
+        double half_angle = 0;
+        int samples = 1;
+        ConeSample which;
+        RayCone width;
+    };
     void begin_answer(sl_ray_query& query) const;
     void add_rays(std::uint32_t ask);
     void add_lane(std::uint32_t ask, std::uint32_t lane);
+    void add_ray(const Place& place, const Cone& cone, Ray ray);
+    [[nodiscard]] Cone cone_of(const sl_ray_query& query, std::uint32_t lane,
+                               const Place& place) const;
     void too_deep(const RayAsk& ask, std::uint32_t lane);
     [[nodiscard]] Place place_of(const RayAsk& ask, std::uint32_t lane) const;
     [[nodiscard]] base::V3f origin(const RayAsk& ask, std::uint32_t lane, const Place& place,
                                    const base::V3f& direction) const;
-    [[nodiscard]] RayCone cone(const sl_ray_query& query, std::uint32_t lane, const Place& place,
-                               const base::V3d& direction, double length) const;
+    [[nodiscard]] RayCone width(const sl_ray_query& query, std::uint32_t lane, const Place& place,
+                                const base::V3d& direction, double length) const;
     [[nodiscard]] MediumId medium(const Place& place, const base::V3f& direction) const;
+
+    void starting(ShadeJob& job) override;
+    [[nodiscard]] bool sends() const override { return is_sending_; }
+    void finished(ShadeJob& job) override;
 
     // The rays so far, traced together.
     void flush();
@@ -63,7 +81,10 @@ private:
     void trace(bool shaded);
     void fold(const Ray& ray, std::size_t slot);
     void fold_hit(const Ray& ray, const geo::Hit& hit);
+    void fold_channels(const Ray& ray, std::size_t slot);
+    [[nodiscard]] base::Color environment(const Ray& ray) const;
     void end_answer(std::size_t index);
+    void tell(const RayAsk& ask, std::uint32_t lane) const;
     static void note_miss(ShadeJob& job, const sl_ray_query& query, std::uint32_t lane);
 
     const FrameContext& frame_;
@@ -74,6 +95,7 @@ private:
     std::vector<std::uint32_t> hits_of_lane_; // rays that met something: ask by ask
     RayFilter filter_;                        // of the rays so far
     bool shades_ = true;
+    bool is_sending_ = false, has_channels_ = false;
     std::vector<Ray> rays_;
     // By slot: rays as they are traced.
     std::vector<std::uint32_t> order_;

@@ -43,7 +43,7 @@ struct ShadeJob {
 
     // The rays, by point.
     std::array<geo::Hit, size> own_hits;
-    alignas(64) std::array<float, size> ox, oy, oz, dx, dy, dz, footprint, widening, spread;
+    alignas(64) std::array<float, size> ox, oy, oz, dx, dy, dz, footprint, widening, spread, length;
     std::array<std::uint32_t, size> seeds, media, samples;
     std::array<sl_string, size> labels;
     std::vector<DeepestMiss> misses; // of the rays that points asked for; empty: none missed

@@ -60,9 +60,11 @@ void SheetWorld::fill(std::span<const geo::Hit> hits, const geo::Incident& incid
         const rib::Attributes& attributes = scene_.attributes[sheet.attributes];
         const base::V3f P(hits[i].u, hits[i].v, sheet.z);
         set(SL_VAR_P, i, P);
-        set(SL_VAR_N, i, {0, 0, -1});
-        set(SL_VAR_Ng, i, {0, 0, -1});
-        set(SL_VAR_I, i, P - base::V3f(incident.ox[i], incident.oy[i], incident.oz[i]));
+        set(SL_VAR_N, i, {0, 0, sheet.side});
+        set(SL_VAR_Ng, i, {0, 0, sheet.side});
+        if (i < incident.ox.size()) {
+            set(SL_VAR_I, i, P - base::V3f(incident.ox[i], incident.oy[i], incident.oz[i]));
+        }
         set(SL_VAR_Cs, i, {attributes.color[0], attributes.color[1], attributes.color[2]});
         set(SL_VAR_Os, i, {attributes.opacity[0], attributes.opacity[1], attributes.opacity[2]});
     }
@@ -101,7 +103,7 @@ void SheetWorld::fill_primitive_differences(std::span<const geo::Hit> hits, std:
 
 base::V3f SheetWorld::spawn_origin(const geo::Hit& hit, const base::V3f& direction) const {
     const float z = sheets_[hit.shape].z;
-    return {hit.u, hit.v, z + (direction.z > 0 ? 1e-5f : -1e-5f) * z};
+    return {hit.u, hit.v, z + (direction.z > 0 ? 1e-5f : -1e-5f) * std::fabs(z)};
 }
 
 base::Mat4 SheetWorld::camera_from_object(const geo::Hit& hit, float) const {

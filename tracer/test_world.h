@@ -16,6 +16,7 @@ struct Sheet {
     float z = 1;
     std::uint32_t attributes = 0;
     float half_width = 1e6f; // |x|, |y| up to here
+    float side = -1;         // N and Ng point along it, in z
     std::map<std::string, rib::Param> variables;
     base::Mat4 camera_from_object;
 };
@@ -54,5 +55,7 @@ private:
 // scale: Ci = tint scale), unset, bad (not a number), spaces (Ci = transform("object", P)), lights
 // ambient, point, distant, cone, volume haze, imager invert.
 void adopt_test_shaders(rt::ShaderLibrary& library);
+// Those that trace: surfaces mirror, glass, probe, gathering, volume absorb, light tracing_light.
+void adopt_test_ray_shaders(rt::ShaderLibrary& library);
 
 } // namespace trace::test

@@ -73,6 +73,18 @@ const ShaderEntry* HitShader::volume_of(const Group& group) const {
 
 // --- one batch
 
+// Something about the points is random: their shaders, their lights or their rays.
+bool HitShader::needs_seeds(const ShadeJob& job) const {
+    const auto is_random = [](const ShaderEntry* shader) {
+        constexpr std::uint32_t facts =
+            SL_FACT_random | SL_FACT_lights | SL_FACT_ambient | SL_FACT_traces;
+        return shader != nullptr && (shader->object().facts & facts) != 0;
+    };
+    return is_random(job.volume_shader) ||
+           (job.shading_class != geo::no_id &&
+            (is_random(class_of(job).surface) || is_random(class_of(job).displacement)));
+}
+
 void HitShader::begin(ShadeJob& job, const Group& group,
                       std::span<const std::uint32_t> members) const {
     job.shading_class = group.shading_class;
@@ -86,10 +98,10 @@ void HitShader::begin(ShadeJob& job, const Group& group,
     rays.kind = rays_.kind;
     rays.diffuse_level = rays_.diffuse_level;
     const std::size_t n = members.size();
-    for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t i = 0; needs_seeds(job) && i < n; ++i) {
         job.seeds[i] = PixelHash::mix(rays_.seed[ray_of(members[i])] + rays_.layer);
+        rays.seeds = {job.seeds.data(), n};
     }
-    rays.seeds = {job.seeds.data(), n};
     if (!rays_.media.empty()) {
         for (std::size_t i = 0; i < n; ++i) {
             job.media[i] = rays_.media[members[i]];

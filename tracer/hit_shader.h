@@ -113,6 +113,7 @@ private:
     [[nodiscard]] std::uint64_t shown_variables(std::uint32_t shading_class) const {
         return outputs_ != nullptr ? outputs_->variables(shading_class) : 0;
     }
+    [[nodiscard]] bool needs_seeds(const ShadeJob& job) const;
     void begin(ShadeJob& job, const Group& group, std::span<const std::uint32_t> members) const;
     void finish(ShadeJob& job);
     void finish_waiting();

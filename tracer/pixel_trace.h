@@ -33,6 +33,7 @@ public:
              const geo::Hit& hit, int level);
     // The samples of the points of the batches that follow.
     void begin_batch(std::span<const std::uint32_t> sample_of_point);
+    [[nodiscard]] const std::vector<std::uint32_t>& batch() const { return sample_of_point_; }
     void before_shader(const Execution& execution, rt::ShadeBatch& batch);
     void after_shader(const Execution& execution, rt::ShadeBatch& batch);
     // What a light gave to the lanes asked; the shadow rays it took come before.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/ray_levels.h"
 
+#include "tracer/pixel_trace.h"
+
 namespace trace {
 
 RayLevels::Level::Level(RayLevels& all)
@@ -31,11 +33,17 @@ void RayLevels::answer(std::span<ShadeJob* const> waiting) {
 
 DeeperShader::DeeperShader(ThreadState& thread) : thread_(thread), level_(thread.levels->enter()) {
     thread_.lights.swap(level_.lights);
+    if (thread_.trace != nullptr) {
+        traced_ = thread_.trace->batch();
+    }
 }
 
 DeeperShader::~DeeperShader() {
     thread_.lights.swap(level_.lights);
     thread_.levels->leave();
+    if (thread_.trace != nullptr) { // the shader that asked goes on
+        thread_.trace->begin_batch(traced_);
+    }
 }
 
 } // namespace trace

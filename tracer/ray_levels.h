@@ -71,6 +71,7 @@ public:
 private:
     ThreadState& thread_;
     RayLevels::Level& level_;
+    std::vector<std::uint32_t> traced_; // --trace-pixel: samples of the batch that asks
 };
 
 } // namespace trace

@@ -5,12 +5,15 @@
 #pragma once
 
 #include "runtime/base/parallel.h"
+#include "tracer/bad_values.h"
 #include "tracer/bucket.h"
 #include "tracer/filter.h"
+#include "tracer/imager.h"
 #include "tracer/lights.h"
 #include "tracer/shader_set.h"
 #include "tracer/test_world.h"
 
+#include <array>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -44,29 +47,40 @@ public:
         param.ints = {value};
         return param;
     }
-    static rib::Param floats(const char* name, rib::ParamType type, std::vector<float> values) {
+    static rib::Param floats(const char* name, rib::ParamType type, std::vector<float> values,
+                             rib::StorageClass storage = rib::StorageClass::Uniform) {
         rib::Param param;
         param.name = name;
-        param.decl = {rib::StorageClass::Uniform, type, 1, false};
+        param.decl = {storage, type, 1, false};
         param.floats = std::move(values);
         return param;
     }
+    static rib::Param text(const char* name, const char* value) {
+        rib::Param param;
+        param.name = name;
+        param.decl.type = rib::ParamType::String;
+        param.strings = {value};
+        return param;
+    }
+    static std::array<float, 3> grey(float value) { return {value, value, value}; }
     static rib::Param number(const char* name, float value) {
         return floats(name, rib::ParamType::Float, {value});
     }
 
-    rib::ShaderId shader(const char* name, std::vector<rib::Param> params = {}) {
+    rib::ShaderId shader(const char* name, std::vector<rib::Param> params = {},
+                         const base::Mat4& world_from_shader = {}) {
         rib::ShaderCall call;
         call.name = name;
         call.params.params = std::move(params);
-        scene.transforms.push_back({{{0, base::Mat4{}}}});
+        scene.transforms.push_back({{{0, world_from_shader}}});
         call.world_from_shader = static_cast<rib::TransformId>(scene.transforms.size() - 1);
         scene.shaders.push_back(call);
         return static_cast<rib::ShaderId>(scene.shaders.size() - 1);
     }
-    rib::LightId light(rib::ShaderId id) {
+    rib::LightId light(rib::ShaderId id, std::uint32_t attributes = rib::none) {
         rib::Light light;
         light.shader = id;
+        light.attributes = attributes;
         scene.lights.push_back(light);
         return static_cast<rib::LightId>(scene.lights.size() - 1);
     }
@@ -84,6 +98,11 @@ public:
         scene.primitives.back().attributes = s.attributes;
         return scene.attributes.back();
     }
+    rib::Attributes& sheet(float z, rib::ShaderId surface, std::vector<rib::LightId> lights) {
+        rib::Attributes& attributes = sheet(z, surface);
+        attributes.lights = std::move(lights);
+        return attributes;
+    }
     void option(const char* key, rib::Param param) { scene.options.user[key] = std::move(param); }
 
     Image render(int num_threads = 1, int bucket_px = size_px) {
@@ -91,7 +110,7 @@ public:
         const Spaces spaces(scene, {camera.screen_from_camera(), camera.ndc_from_screen(),
                                     camera.raster_from_screen()});
         const ShaderSet shaders({scene, spaces, library, strings, diag});
-        const LightSet lights(scene, shaders, diag);
+        const LightSet lights(scene, shaders);
         const ShadingClasses classes(scene, shaders, lights);
         const SheetWorld world(scene, sheets);
         const FrameContext frame{scene, spaces, strings, diag, &world, &shaders, &lights};
@@ -112,10 +131,16 @@ public:
             }
             return renderer->render(bucket, *film);
         });
+        BadValues bad;
         for (const auto& renderer : renderers) {
             if (renderer) {
                 counters += renderer->thread().counters;
+                bad.add(renderer->thread().bad);
             }
+            report_bad_values(frame, bad, {});
+        }
+        if (const ShaderEntry* imager = shaders.get(scene.options.imager)) {
+            run_imager(frame, *imager, film->image(), num_threads, counters);
         }
         return std::move(film->image());
     }

@@ -16,10 +16,8 @@ namespace {
 
 constexpr double tolerance = 1e-5;
 
-class Transport : public ::testing::Test, public test::TestFrame {
+class Transport : public ::testing::Test, protected test::TestFrame {
 protected:
-    static std::array<float, 3> grey(float value) { return {value, value, value}; }
-
     rib::Attributes& backdrop(float z, float value, float side = -1) {
         rib::Attributes& a = sheet(z, shader("flat"), side);
         a.color = grey(value);
@@ -267,8 +265,8 @@ TEST_F(Transport, GatherSendsParameters) {
 TEST_F(Transport, LightsMayTraceToWhatTheyLight) {
     const auto traced = light(shader("tracing_light"));
     const auto glow = light(shader("ambient", {number("intensity", 0.25f)}));
-    sheet(2, shader("lit")).lights = std::vector<rib::LightId>{traced};
-    sheet(-1, shader("lit"), -1).lights = std::vector<rib::LightId>{traced, glow};
+    sheet(2, shader("lit"), std::vector<rib::LightId>{traced});
+    sheet(-1, shader("lit"), std::vector<rib::LightId>{traced, glow});
     expect_all(render(), Plane::R, 0.25);
 }
 

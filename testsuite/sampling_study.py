@@ -5,6 +5,7 @@
     testsuite/sampling_study.py BUILD                    both tables
     testsuite/sampling_study.py BUILD --plot FILE.svg    error against processor time too (needs python3-matplotlib)
     testsuite/sampling_study.py BUILD --scenes room,edges --keep FOLDER
+    testsuite/sampling_study.py BUILD --bench            JSON lines (docs/benchmarks.md)
 
 BUILD is a build folder. Errors are those of clamped pictures, in 1/255: against a reference of 32x32 samples (root of
 the mean square), and, for reuse, against the same samples shaded one by one (99.9th percentile of all values).
@@ -69,7 +70,8 @@ class Renderer:
 
 class Picture:
     def __init__(self, path):
-        self.values = [min(max(v, 0.0), 1.0) for row in read_picture(path).rows for v in row]
+        self.values = [min(max(row[i], 0.0), 1.0) for row in read_picture(path).rows for i in range(len(row))
+                       if i % 4 != 3]  # colours; alpha would dilute the percentiles
 
     def differences(self, other):
         return [abs(a - b) * 255 for a, b in zip(self.values, other.values)]
@@ -110,6 +112,36 @@ def methods_table(renderer, scenes):
     return curves
 
 
+def at_error(curve, error):
+    """What a curve of (cost, error) costs at an error: a straight line on logarithmic scales, through its ends beyond them."""
+    points = sorted((math.log(e), math.log(cost)) for cost, e in curve)
+    x = math.log(error)
+    k = next((i for i in range(1, len(points) - 1) if x < points[i][0]), len(points) - 1)
+    (x0, y0), (x1, y1) = points[k - 1], points[k]
+    return math.exp(y0 + (y1 - y0) * (x - x0) / (x1 - x0))
+
+
+def bench(renderer):
+    for scene in ("room", "patches", "glass"):
+        every, slow, all_points = renderer.run(scene, samples(4), f"{scene}_every")
+        reused, fast, points = renderer.run(scene, samples(4) + REUSE, f"{scene}_reused")
+        ratio = all_points["points_surface"] / points["points_surface"]
+        print(json.dumps({"name": f"shades shared, {scene}", "value": round(ratio, 1), "unit": "times fewer points", "limit": 8,
+                          "error": f"99.9 % of differences below {every.percentile(reused, .999):.1f} of 255",
+                          "note": f"320x240, 4x4 samples, one thread: {slow:.2f} s, shared {fast:.2f} s"}))
+    for scene in ("room", "edges"):
+        reference, _, _ = renderer.run(scene, samples(24), f"{scene}_reference")
+        curve = []
+        for options in METHODS["plain"]:
+            picture, _, counters = renderer.run(scene, options, f"{scene}_plain")
+            curve.append((counters["rays_camera"], picture.rms(reference)))
+        picture, seconds, counters = renderer.run(scene, adaptive(.001, 4, 64), f"{scene}_adaptive")
+        error = picture.rms(reference)
+        print(json.dumps({"name": f"adaptive sampling, {scene}", "unit": "times fewer rays",
+                          "value": round(at_error(curve, error) / counters["rays_camera"], 1),
+                          "error": f"equal: {error:.2f} of 255", "note": f"{seconds:.2f} s, one thread"}))
+
+
 def plot(curves, path):
     import matplotlib
     matplotlib.use("svg")
@@ -138,6 +170,7 @@ def main():
     parser.add_argument("--scenes", default=",".join(SCENES))
     parser.add_argument("--plot")
     parser.add_argument("--keep")
+    parser.add_argument("--bench", action="store_true")
     parser.add_argument("--only", choices=["reuse", "methods"])
     arguments = parser.parse_args()
     scenes = arguments.scenes.split(",")
@@ -145,6 +178,9 @@ def main():
         folder = os.path.abspath(arguments.keep or temporary)
         os.makedirs(folder, exist_ok=True)
         renderer = Renderer(os.path.abspath(arguments.build), folder)
+        if arguments.bench:
+            bench(renderer)
+            return
         if arguments.only != "methods":
             reuse_table(renderer, scenes)
         if arguments.only != "reuse":

@@ -11,9 +11,16 @@ namespace {
 
 constexpr int default_least = 4;
 constexpr int max_per_pixel = 4096;
-// An edge through a pixel passes two of its neighbours that lie opposite; where only others have
-// variance it may still end here or turn, which is worth this share.
-constexpr float share_of_others = 0.25f;
+// A step somewhere between two neighbours that lie opposite, or a ramp, has this part of the square
+// of their difference as variance in between (a step right there: a quarter).
+constexpr float of_step = 1.0f / 12;
+// The same for the largest difference among all neighbours: thin things pass through without
+// making opposite ones differ.
+constexpr float of_range = 1.0f / 48;
+
+int multiple_of_quarters(int n) {
+    return (n + quarters - 1) / quarters * quarters;
+}
 
 // Integer parameters may come as floats.
 int int_of(const rib::Param* p, int fallback) {
@@ -41,9 +48,9 @@ AdaptiveSettings adaptive_settings(const rib::Options& options, int per_pixel) {
         return s;
     }
     s.variance = options.pixel_variance;
-    s.most = limit(options, "render:maxsamples", "maxsamples", per_pixel);
-    // Two samples are the fewest that tell a variance.
-    s.least = std::max(2, limit(options, "render:minsamples", "minsamples", default_least));
+    s.most = multiple_of_quarters(limit(options, "render:maxsamples", "maxsamples", per_pixel));
+    s.least = multiple_of_quarters(
+        std::max(limit(options, "render:minsamples", "minsamples", default_least), 1));
     return s;
 }
 
@@ -51,18 +58,27 @@ Adaptive::Adaptive(const AdaptiveSettings& settings, const rib::Options& options
     : settings_(settings), gain_(options.gain > 0 ? options.gain : 1),
       power_(options.gamma > 0 ? 1 / options.gamma : 1) {}
 
+// As it is seen; what is no number counts as nothing, as in the film.
+Adaptive::Values Adaptive::shown(const Sample& sample) const {
+    const float alpha = (sample.opacity[0] + sample.opacity[1] + sample.opacity[2]) / 3;
+    Values v = {sample.color[0] * gain_, sample.color[1] * gain_, sample.color[2] * gain_, alpha};
+    for (std::size_t c = 0; c < channels; ++c) {
+        v[c] = v[c] > 0 ? std::min(v[c], 1.0f) : 0;
+        v[c] = power_ == 1 || c == 3 ? v[c] : std::pow(v[c], power_);
+    }
+    return v;
+}
+
 Adaptive::Estimate Adaptive::estimate(std::span<const Sample> samples) const {
+    if (samples.size() == 1) {
+        return {shown(samples[0]), 0};
+    }
     std::array<double, channels> sum{}, squares{};
     for (const Sample& sample : samples) {
-        const float alpha = (sample.opacity[0] + sample.opacity[1] + sample.opacity[2]) / 3;
-        const float values[channels] = {sample.color[0] * gain_, sample.color[1] * gain_,
-                                        sample.color[2] * gain_, alpha};
+        const Values v = shown(sample);
         for (std::size_t c = 0; c < channels; ++c) {
-            // As it is shown; what is no number counts as nothing, as in the film.
-            float v = values[c] > 0 ? std::min(values[c], 1.0f) : 0;
-            v = power_ == 1 || c == 3 ? v : std::pow(v, power_);
-            sum[c] += static_cast<double>(v);
-            squares[c] += static_cast<double>(v) * static_cast<double>(v);
+            sum[c] += static_cast<double>(v[c]);
+            squares[c] += static_cast<double>(v[c]) * static_cast<double>(v[c]);
         }
     }
     Estimate out{};
@@ -76,49 +92,83 @@ Adaptive::Estimate Adaptive::estimate(std::span<const Sample> samples) const {
     return out;
 }
 
-// Of a sample of pixel (x, y), from its up to eight neighbours in the tile.
-float Adaptive::expected_variance(const PixelRange& tile, int x, int y) const {
-    constexpr int half[4][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
-    float across = 0, sum = 0;
-    int count = 0;
-    for (const auto& [dx, dy] : half) {
-        const bool has_a = tile.contains(x + dx, y + dy), has_b = tile.contains(x - dx, y - dy);
-        const Estimate* a = has_a ? &at(x + dx, y + dy) : nullptr;
-        const Estimate* b = has_b ? &at(x - dx, y - dy) : nullptr;
-        sum += (has_a ? a->variance : 0) + (has_b ? b->variance : 0);
-        count += (has_a ? 1 : 0) + (has_b ? 1 : 0);
-        if (has_a && has_b) {
-            across = std::max(across, std::min(a->variance, b->variance));
-            for (std::size_t c = 0; c < channels; ++c) { // a ramp from a to b, its part in here
-                const float ramp = (a->mean[c] - b->mean[c]) / 2;
-                across = std::max(across, ramp * ramp / 12);
-            }
-        } else if (has_a || has_b) { // the tile ends here: the other side is unknown
-            across = std::max(across, (has_a ? a : b)->variance / 2);
+void Adaptive::make_estimates(std::span<const Sample> firsts) {
+    const auto each = static_cast<std::size_t>(settings_.least / quarters);
+    const auto width = 2 * static_cast<std::size_t>(pixels_.width());
+    estimates_.resize(pixels_.area() * quarters);
+    std::size_t from = 0;
+    for (std::size_t pixel = 0; pixel < pixels_.area(); ++pixel) {
+        const std::size_t x = 2 * (pixel % (width / 2)), y = 2 * (pixel / (width / 2));
+        for (std::size_t q = 0; q < quarters; ++q, from += each) {
+            estimates_[(y + q / 2) * width + x + q % 2] = estimate(firsts.subspan(from, each));
         }
     }
-    const float mean = count > 0 ? sum / static_cast<float>(count) : 0;
-    return std::max(across, share_of_others * mean);
+}
+
+// Null: another tile.
+const Adaptive::Estimate* Adaptive::at(const PixelRange& tile, int x, int y) const {
+    const int px = x >> 1, py = y >> 1;
+    if (!tile.contains(px, py)) {
+        return nullptr;
+    }
+    return &estimates_[static_cast<std::size_t>(y - 2 * pixels_.y0) *
+                           static_cast<std::size_t>(2 * pixels_.width()) +
+                       static_cast<std::size_t>(x - 2 * pixels_.x0)];
+}
+
+// Of one sample of a quarter, from its up to eight neighbours in the tile.
+float Adaptive::expected_variance(int x, int y) const {
+    constexpr int half[4][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
+    const PixelRange tile = tile_at(x >> 1, y >> 1).intersected(pixels_);
+    Values low, high;
+    low.fill(1);
+    high.fill(0);
+    float expected = 0;
+    for (const auto& [dx, dy] : half) {
+        const Estimate* a = at(tile, x + dx, y + dy);
+        const Estimate* b = at(tile, x - dx, y - dy);
+        for (const Estimate* e : {a, b}) {
+            for (std::size_t c = 0; e != nullptr && c < channels; ++c) {
+                low[c] = std::min(low[c], e->mean[c]);
+                high[c] = std::max(high[c], e->mean[c]);
+            }
+        }
+        if (a == nullptr || b == nullptr) { // the tile ends here: the other side is unknown
+            const Estimate* one = a != nullptr ? a : b;
+            expected = std::max(expected, one != nullptr ? one->variance / 2 : 0);
+            continue;
+        }
+        expected = std::max(expected, std::min(a->variance, b->variance));
+        for (std::size_t c = 0; c < channels; ++c) {
+            const float step = a->mean[c] - b->mean[c];
+            expected = std::max(expected, of_step * step * step);
+        }
+    }
+    for (std::size_t c = 0; c < channels; ++c) {
+        const float range = high[c] - low[c];
+        expected = std::max(expected, range > 0 ? of_range * range * range : 0);
+    }
+    return expected;
 }
 
 void Adaptive::decide(const PixelRange& tiles, std::span<const Sample> firsts,
                       const PixelRange& wanted, std::vector<std::uint16_t>& counts) {
     pixels_ = tiles;
-    const auto least = static_cast<std::size_t>(settings_.least);
-    estimates_.resize(tiles.area());
-    for (std::size_t i = 0; i < estimates_.size(); ++i) {
-        estimates_[i] = estimate(firsts.subspan(i * least, least));
-    }
+    make_estimates(firsts);
     counts.clear();
+    const int least = settings_.least / quarters, most = settings_.most / quarters;
     for (int y = wanted.y0; y < wanted.y1; ++y) {
         for (int x = wanted.x0; x < wanted.x1; ++x) {
-            const PixelRange tile = tile_at(x, y).intersected(tiles);
-            const float needed = expected_variance(tile, x, y) / settings_.variance;
-            const auto most = static_cast<float>(settings_.most);
-            const auto n = static_cast<unsigned>(std::clamp(needed, 1.0f, most));
-            // Powers of two are the best spread.
-            counts.push_back(static_cast<std::uint16_t>(
-                std::clamp(static_cast<int>(std::bit_ceil(n)), settings_.least, settings_.most)));
+            for (int q = 0; q < quarters; ++q) {
+                // The variance of the pixel is a quarter of that of its quarters.
+                const float needed = expected_variance(2 * x + q % 2, 2 * y + q / 2) /
+                                     (settings_.variance * quarters);
+                const auto n = static_cast<unsigned>(
+                    std::ceil(std::clamp(needed, 1.0f, static_cast<float>(most))));
+                // Powers of two are the best spread.
+                counts.push_back(static_cast<std::uint16_t>(
+                    std::clamp(static_cast<int>(std::bit_ceil(n)), least, most)));
+            }
         }
     }
 }

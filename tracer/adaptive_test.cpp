@@ -22,6 +22,7 @@ using trace::Sampler;
 
 constexpr int block_px = 8; // the picture repeats after these; tiles hold four of them
 constexpr AdaptiveSettings settings{.variance = 0.002f, .least = 4, .most = 32};
+constexpr std::size_t per_quarter = settings.most / trace::quarters;
 
 // Position inside the repeated block, pixels.
 using Function = std::function<float(float x, float y)>;
@@ -45,8 +46,8 @@ std::vector<Sample> samples_of(const SampleBlock& block, const Function& f) {
 using Decide =
     std::function<void(const PixelRange&, std::span<const Sample>, std::vector<std::uint16_t>&)>;
 
-struct Means {
-    std::array<double, block_px * block_px> sum{}, squares{};
+struct Means { // of the quarters of pixels
+    std::array<double, block_px * block_px * trace::quarters> sum{}, squares{};
     std::size_t count = 0; // of each
     double samples = 0;    // per pixel
 };
@@ -61,16 +62,20 @@ Means estimate(const Function& f, const Decide& decide, int tiles) {
         const Sampler sampler = adaptive_sampler(static_cast<std::uint32_t>(ty));
         for (int tx = 0; tx < tiles; ++tx) {
             const PixelRange tile = trace::tile_at(tx * trace::tile_px, ty * trace::tile_px);
-            sampler.fill(tile, settings.least, block);
+            sampler.fill_firsts(tile, block);
             decide(tile, samples_of(block, f), counts);
             sampler.fill(tile, block);
             const std::vector<Sample> all = samples_of(block, f);
             for (std::size_t i = 0; i < counts.size(); ++i) {
-                double mean = 0;
+                double mean = 0; // of a quarter, all of which are alike
                 for (std::size_t s = 0; s < counts[i]; ++s) {
-                    mean += static_cast<double>(all[i * settings.most + s].color[0]) / counts[i];
+                    mean += static_cast<double>(all[i * per_quarter + s].color[0]) / counts[i];
                 }
-                const std::size_t at = i / trace::tile_px % block_px * block_px + i % block_px;
+                const std::size_t pixel = i / trace::quarters;
+                const std::size_t at =
+                    (pixel / trace::tile_px % block_px * block_px + pixel % block_px) *
+                        trace::quarters +
+                    i % trace::quarters;
                 means.sum[at] += mean;
                 means.squares[at] += mean * mean;
                 means.samples += counts[i];
@@ -82,14 +87,16 @@ Means estimate(const Function& f, const Decide& decide, int tiles) {
     return means;
 }
 
-double integral(const Function& f, std::size_t pixel) {
-    constexpr int n = 200;
+double integral(const Function& f, std::size_t quarter) {
+    constexpr int n = 150;
+    const std::size_t pixel = quarter / trace::quarters, q = quarter % trace::quarters;
+    const float x = static_cast<float>(pixel % block_px) + static_cast<float>(q % 2) / 2;
+    const float y = static_cast<float>(pixel / block_px) + static_cast<float>(q / 2) / 2;
     double sum = 0;
     for (int j = 0; j < n; ++j) {
         for (int i = 0; i < n; ++i) {
-            sum += static_cast<double>(
-                f(static_cast<float>(pixel % block_px) + (static_cast<float>(i) + 0.5f) / n,
-                  static_cast<float>(pixel / block_px) + (static_cast<float>(j) + 0.5f) / n));
+            sum += static_cast<double>(f(x + (static_cast<float>(i) + 0.5f) / (2 * n),
+                                         y + (static_cast<float>(j) + 0.5f) / (2 * n)));
         }
     }
     return sum / (n * n);
@@ -103,7 +110,7 @@ double worst_bias(const Function& f, const Means& means) {
         const double mean = means.sum[i] / n;
         const double variance = std::max(means.squares[i] / n - mean * mean, 0.0);
         // The floor: what the sum over the grid of integral() is off by.
-        const double error = std::sqrt(variance / n) + 3e-4;
+        const double error = std::sqrt(variance / n) + 5e-4;
         worst = std::max(worst, std::fabs(mean - integral(f, i)) / error);
     }
     return worst;
@@ -125,7 +132,8 @@ void by_own_samples(const PixelRange& tile, std::span<const Sample> firsts,
             differ |=
                 firsts[i * settings.least + s].color[0] != firsts[i * settings.least].color[0];
         }
-        counts.push_back(differ ? settings.most : settings.least);
+        counts.insert(counts.end(), trace::quarters,
+                      static_cast<std::uint16_t>(differ ? per_quarter : 1));
     }
 }
 
@@ -158,21 +166,19 @@ TEST(Adaptive, DecidingByThePixelsOwnSamplesWouldBeSeen) {
     EXPECT_GT(worst_bias(f, estimate(f, by_own_samples, num_tiles)), 2 * significant);
 }
 
-TEST(Adaptive, NoPixelDecidesAboutItself) {
+TEST(Adaptive, NoQuarterDecidesAboutItself) {
     const Sampler sampler = adaptive_sampler();
     const PixelRange tile = trace::tile_at(0, 0);
     SampleBlock block;
-    sampler.fill(tile, settings.least, block);
+    sampler.fill_firsts(tile, block);
     const std::vector<Sample> firsts = samples_of(block, edge);
     std::vector<std::uint16_t> before, after;
     by_neighbours(tile, firsts, before);
-    for (std::size_t pixel = 0; pixel < tile.area(); ++pixel) {
+    for (std::size_t quarter = 0; quarter < before.size(); ++quarter) {
         std::vector<Sample> changed = firsts;
-        for (std::size_t s = 0; s < settings.least; ++s) {
-            changed[pixel * settings.least + s].color[0] = s % 2 == 0 ? 0.0f : 1.0f;
-        }
+        changed[quarter].color[0] = 1 - changed[quarter].color[0];
         by_neighbours(tile, changed, after);
-        EXPECT_EQ(before[pixel], after[pixel]) << pixel;
+        EXPECT_EQ(before[quarter], after[quarter]) << quarter;
     }
 }
 
@@ -180,7 +186,7 @@ TEST(Adaptive, APartOfATileGetsTheSameCounts) {
     const Sampler sampler = adaptive_sampler();
     const PixelRange tiles{-1, 0, 32, 32}, part{9, 3, 27, 20};
     SampleBlock block;
-    sampler.fill(tiles, settings.least, block);
+    sampler.fill_firsts(tiles, block);
     for (std::int32_t& px : block.px) {
         px += block_px; // of the left neighbour, too
     }
@@ -191,10 +197,10 @@ TEST(Adaptive, APartOfATileGetsTheSameCounts) {
     adaptive.decide(tiles, firsts, tiles, all);
     adaptive.decide(tiles, firsts, part, some);
     for (std::size_t i = 0; i < some.size(); ++i) {
-        const int x = part.x0 + static_cast<int>(i) % part.width();
-        const int y = part.y0 + static_cast<int>(i) / part.width();
-        EXPECT_EQ(some[i],
-                  all[static_cast<std::size_t>((y - tiles.y0) * tiles.width() + x - tiles.x0)]);
+        const int pixel = static_cast<int>(i / trace::quarters);
+        const int x = part.x0 + pixel % part.width(), y = part.y0 + pixel / part.width();
+        const auto in_all = static_cast<std::size_t>((y - tiles.y0) * tiles.width() + x - tiles.x0);
+        EXPECT_EQ(some[i], all[in_all * trace::quarters + i % trace::quarters]);
     }
 }
 
@@ -208,7 +214,7 @@ TEST(Adaptive, OptionsSayHowManySamples) {
     options.user["render:maxsamples"].ints = {64};
     options.user["render:minsamples"].ints = {0};
     EXPECT_EQ(trace::adaptive_settings(options, 4).most, 64);
-    EXPECT_EQ(trace::adaptive_settings(options, 4).least, 2) << "one sample has no variance";
+    EXPECT_EQ(trace::adaptive_settings(options, 4).least, 4) << "one for every quarter";
     options.user["render:maxsamples"].ints = {1 << 30};
     EXPECT_EQ(trace::adaptive_settings(options, 4).most, 4096);
 }
@@ -227,13 +233,13 @@ TEST(Adaptive, PixelsCountByTheirArea) {
     ASSERT_EQ(film->num_buckets(), 1U);
     const PixelRange pixels = film->sample_pixels(0);
     std::vector<std::uint16_t> counts;
-    for (std::size_t i = 0; i < pixels.area(); ++i) {
-        counts.push_back(static_cast<std::uint16_t>(4 + 7 * (i % 5)));
+    for (std::size_t i = 0; i < pixels.area() * trace::quarters; ++i) {
+        counts.push_back(static_cast<std::uint16_t>(1 + i % 7));
     }
     trace::SampleBuffer samples = film->buffer(0, counts);
-    for (std::size_t i = 0; i < counts.size(); ++i) {
+    for (std::size_t i = 0; i < pixels.area(); ++i) {
         const auto [first, count] = samples.part(i);
-        ASSERT_EQ(count, counts[i]);
+        ASSERT_EQ(count, counts[4 * i] + counts[4 * i + 1] + counts[4 * i + 2] + counts[4 * i + 3]);
         for (std::size_t s = first; s < first + count; ++s) {
             samples.samples[s].color[0] = static_cast<float>(i);
         }

@@ -74,21 +74,22 @@ SampleBuffer BucketRenderer::render_fixed(std::size_t bucket, Film& film) {
 // The first samples of whole tiles, then more where they say so.
 SampleBuffer BucketRenderer::render_adaptive(std::size_t bucket, Film& film) {
     const PixelRange tiles = film.tile_pixels(bucket), owned = film.sample_pixels(bucket);
-    const int least = sampler_.settings().least;
+    const int each = sampler_.settings().least / quarters;
     auto& [firsts, rest] = passes_;
     reuse_.begin(tiles);
-    sampler_.fill(tiles, least, block_);
+    sampler_.fill_firsts(tiles, block_);
     firsts.pixels = tiles;
     clear(firsts);
     run_pass(firsts);
     adaptive_.decide(tiles, firsts.samples, owned, counts_);
     more_.clear();
     for (std::size_t i = 0; i < counts_.size(); ++i) {
-        const int at = static_cast<int>(i);
-        const auto first = static_cast<std::uint16_t>(least);
-        if (counts_[i] > first) {
-            more_.push_back(
-                {owned.x0 + at % owned.width(), owned.y0 + at / owned.width(), first, counts_[i]});
+        const int pixel = static_cast<int>(i / quarters);
+        const int number = static_cast<int>(i % quarters) * sampler_.per_quarter();
+        if (counts_[i] > each) {
+            more_.push_back({owned.x0 + pixel % owned.width(), owned.y0 + pixel / owned.width(),
+                             static_cast<std::uint16_t>(number + each),
+                             static_cast<std::uint16_t>(number + counts_[i])});
         }
     }
     sampler_.fill(more_, block_);
@@ -96,16 +97,16 @@ SampleBuffer BucketRenderer::render_adaptive(std::size_t bucket, Film& film) {
     clear(rest);
     run_pass(rest);
     SampleBuffer samples = film.buffer(bucket, counts_);
-    std::size_t at = 0, in_rest = 0;
-    for (int y = owned.y0; y < owned.y1; ++y) {
-        for (int x = owned.x0; x < owned.x1; ++x) {
-            const SampleBuffer::Part part = firsts.part(x, y);
-            const std::size_t more = samples.part(x, y).count - part.count;
-            append(firsts, part, samples, at);
-            append(rest, {in_rest, more}, samples, at + part.count);
-            at += part.count + more;
-            in_rest += more;
-        }
+    const auto few = static_cast<std::size_t>(each);
+    std::size_t in_rest = 0;
+    for (std::size_t i = 0; i < counts_.size(); ++i) {
+        const int pixel = static_cast<int>(i / quarters);
+        const std::size_t first =
+            firsts.part(owned.x0 + pixel % owned.width(), owned.y0 + pixel / owned.width()).first;
+        const std::size_t more = counts_[i] - few, at = samples.begins[i];
+        append(firsts, {first + i % quarters * few, few}, samples, at);
+        append(rest, {in_rest, more}, samples, at + few);
+        in_rest += more;
     }
     return samples;
 }

@@ -233,7 +233,7 @@ SampleBuffer Film::buffer(std::size_t bucket, std::span<const std::uint16_t> cou
     std::size_t n = out.pixels.area() * static_cast<std::size_t>(sampler_.per_pixel());
     out.begins.clear();
     if (!counts.empty()) {
-        assert(counts.size() == out.pixels.area());
+        assert(counts.size() == out.pixels.area() * quarters);
         out.begins.push_back(0);
         for (const std::uint16_t count : counts) {
             out.begins.push_back(out.begins.back() + count);

@@ -42,8 +42,8 @@ struct SampleBuffer {
     std::vector<Sample> samples;
     int num_extra = 0;        // further channels (AOVs) per sample
     std::vector<float> extra; // [sample][channel]
-    // Where the samples of a pixel begin, and their number at the end; empty: every pixel has
-    // equally many.
+    // Adaptive sampling: where the samples of each quarter of each pixel begin, and their number at
+    // the end; empty: every pixel has equally many samples.
     std::vector<std::uint32_t> begins;
 
     struct Part {
@@ -52,16 +52,17 @@ struct SampleBuffer {
     // The samples of pixel number `pixel`.
     [[nodiscard]] Part part(std::size_t pixel) const {
         if (!begins.empty()) {
-            return {begins[pixel], begins[pixel + 1] - begins[pixel]};
+            const std::uint32_t first = begins[pixel * quarters];
+            return {first, begins[(pixel + 1) * quarters] - first};
         }
         const std::size_t each = samples.size() / pixels.area();
         return {pixel * each, each};
     }
-    [[nodiscard]] Part part(int x, int y) const {
-        return part(static_cast<std::size_t>(y - pixels.y0) *
-                        static_cast<std::size_t>(pixels.width()) +
-                    static_cast<std::size_t>(x - pixels.x0));
+    [[nodiscard]] std::size_t pixel(int x, int y) const {
+        return static_cast<std::size_t>(y - pixels.y0) * static_cast<std::size_t>(pixels.width()) +
+               static_cast<std::size_t>(x - pixels.x0);
     }
+    [[nodiscard]] Part part(int x, int y) const { return part(pixel(x, y)); }
 };
 
 enum class DepthFilter : std::uint8_t { Min, Max, Average };
@@ -168,8 +169,8 @@ public:
     // Before the first submit; the observer must outlive the film's work.
     void add_observer(FilmObserver& observer) { observers_.push_back(&observer); }
 
-    // A buffer for a bucket, every sample uncovered. counts: how many samples each of its pixels
-    // has; empty: as many as the sampler gives at most. Thread-safe.
+    // A buffer for a bucket, every sample uncovered. counts: how many samples each quarter of its
+    // pixels has; empty: pixels have all the sampler gives. Thread-safe.
     [[nodiscard]] SampleBuffer buffer(std::size_t bucket,
                                       std::span<const std::uint16_t> counts = {});
     // Hands the samples of a bucket over. Filters every bucket that became complete. Thread-safe.

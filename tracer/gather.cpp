@@ -57,8 +57,8 @@ Gather::Gather(const Sampler& sampler, const FilterWeights& weights,
                std::span<const ExtraChannel> extra, DepthFilter depth, const PixelRange& output)
     : sampler_(sampler), extra_(extra), depth_(depth), output_(output),
       pixels_(in_reach(output, weights, extra)), width_(static_cast<std::size_t>(pixels_.width())),
-      per_pixel_(static_cast<std::size_t>(sampler.per_pixel())), sources_(pixels_.area()),
-      reach_(reach_of(weights)) {
+      per_pixel_(static_cast<std::size_t>(sampler.per_pixel())),
+      per_quarter_(per_pixel_ / quarters), sources_(pixels_.area()), reach_(reach_of(weights)) {
     make_runs();
 }
 
@@ -88,14 +88,13 @@ void Gather::add_row(const SampleBuffer& buffer, int y, int x0, int x1) {
     const auto channels = static_cast<std::size_t>(buffer.num_extra);
     const PixelHash hash(y);
     for (int x = x0; x < x1; ++x, ++to, ++pixel) {
-        const bool is_full = buffer.begins.empty();
-        const std::size_t first = is_full ? pixel * per_pixel_ : buffer.begins[pixel];
-        const std::size_t count = is_full ? per_pixel_ : buffer.begins[pixel + 1] - first;
+        const auto [first, count] = buffer.begins.empty()
+                                        ? SampleBuffer::Part{pixel * per_pixel_, per_pixel_}
+                                        : buffer.part(pixel);
         *to = {buffer.samples.data() + first, buffer.extra.data() + first * channels,
                static_cast<std::uint32_t>(sampler_.pattern(hash(x)) * reach_.near.size()),
-               static_cast<std::uint16_t>(count),
-               count == per_pixel_ ? 1.0f
-                                   : static_cast<float>(per_pixel_) / static_cast<float>(count)};
+               static_cast<std::uint32_t>(count),
+               buffer.begins.empty() ? nullptr : buffer.begins.data() + pixel * quarters};
     }
 }
 

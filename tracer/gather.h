@@ -7,7 +7,6 @@
 
 #include "tracer/film.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -31,8 +30,8 @@ private:
         const Sample* samples = nullptr;
         const float* extra = nullptr;
         std::uint32_t slot = 0; // in the weights of reach_: pattern of the sampler times neighbours
-        std::uint16_t count = 0;
-        float density = 1; // of the densest samples, by its own: a pixel counts by its area
+        std::uint32_t count = 0;
+        const std::uint32_t* begins = nullptr; // of its quarters; null: it has all samples
     };
     // A filter and where the pixels in its reach lie: offsets in sources_, row by row.
     struct Reach {
@@ -52,6 +51,8 @@ private:
     void make_runs();
     void add_row(const SampleBuffer& buffer, int y, int x0, int x1);
     template <class Body>
+    void for_quarters(const Source& source, const float* weights, const Body& body) const;
+    template <class Body>
     void for_samples(const Source* own, const Reach& reach, const Body& body) const;
     [[nodiscard]] Sum filtered(const Source* own) const;
     [[nodiscard]] Sum careful(const Source* own, bool plain) const;
@@ -70,9 +71,9 @@ private:
     const Sampler& sampler_;
     std::span<const ExtraChannel> extra_;
     DepthFilter depth_;
-    PixelRange output_, pixels_;    // computed; looked at
-    std::size_t width_, per_pixel_; // of pixels_; samples at most
-    std::vector<Source> sources_;   // of pixels_, row by row
+    PixelRange output_, pixels_;                  // computed; looked at
+    std::size_t width_, per_pixel_, per_quarter_; // of pixels_; samples at most
+    std::vector<Source> sources_;                 // of pixels_, row by row
     Reach reach_;
     std::vector<Run> runs_;
 };
@@ -89,10 +90,25 @@ void Gather::for_samples(const Source* own, const Reach& reach, const Body& body
         const std::size_t slot = first + k;
         const FilterWeights::Span span = weights.span(slot);
         const float* w = weights.weights(slot);
-        const std::size_t last = std::min(span.last, source.count);
-        const float density = source.density;
-        for (std::size_t s = span.first; s < last; ++s) {
-            body(source, s, w[s] * density);
+        if (source.begins != nullptr) {
+            for_quarters(source, w, body);
+            continue;
+        }
+        for (std::size_t s = span.first; s < span.last; ++s) {
+            body(source, s, w[s]);
+        }
+    }
+}
+
+// A quarter counts by its area, however many samples it has.
+template <class Body>
+void Gather::for_quarters(const Source& source, const float* weights, const Body& body) const {
+    std::size_t s = 0;
+    for (std::size_t q = 0; q < quarters; ++q, weights += per_quarter_) {
+        const std::size_t count = source.begins[q + 1] - source.begins[q];
+        const float density = static_cast<float>(per_quarter_) / static_cast<float>(count);
+        for (std::size_t k = 0; k < count; ++k, ++s) {
+            body(source, s, weights[k] * density);
         }
     }
 }

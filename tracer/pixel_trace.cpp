@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 namespace trace {
 
@@ -403,21 +404,58 @@ void for_weights(const Sampler& sampler, const FilterWeights& weights, int x, in
 
 } // namespace
 
+namespace {
+
+struct KeptSample {
+    const Sample* sample = nullptr; // null: the pixel did not get it
+    float density = 1;              // what its filter weight is multiplied by
+};
+
+KeptSample kept_sample(const SampleBuffer& kept, const Sampler& sampler, int x, int y,
+                       std::size_t number) {
+    const std::size_t first = kept.part(x, y).first;
+    if (kept.begins.empty()) {
+        return {&kept.samples[first + number], 1};
+    }
+    const auto most = static_cast<std::size_t>(sampler.per_quarter());
+    const auto* const begins = kept.begins.data() + kept.pixel(x, y) * quarters;
+    const std::size_t begin = begins[number / most], count = begins[number / most + 1] - begin;
+    if (number % most >= count) {
+        return {};
+    }
+    return {&kept.samples[begin + number % most],
+            static_cast<float>(most) / static_cast<float>(count)};
+}
+
+// Numbers of the samples of a pixel in the order they were taken: the first few of every quarter,
+// then the rest.
+std::vector<std::size_t> numbers_taken(const Sampler& sampler) {
+    const auto all = static_cast<std::size_t>(sampler.per_pixel());
+    const auto first = static_cast<std::size_t>(sampler.settings().least / quarters);
+    const auto most = static_cast<std::size_t>(sampler.per_quarter());
+    std::vector<std::size_t> out(all);
+    std::iota(out.begin(), out.end(), 0U);
+    if (first > 0) {
+        std::ranges::stable_partition(out, [&](std::size_t n) { return n % most < first; });
+    }
+    return out;
+}
+
+} // namespace
+
 void PixelTrace::append_filter(const Sampler& sampler, const FilterWeights& weights) {
-    const auto per_pixel = static_cast<std::size_t>(sampler.per_pixel());
     float sum = 0;
     line(text_, at_sample, "filter: weight, sample, color, opacity");
     for_weights(sampler, weights, x_, y_, [&](int x, int y, int s, float weight) {
         if (!kept_.pixels.contains(x, y)) {
             return;
         }
-        const auto [first, count] = kept_.part(x, y);
-        if (static_cast<std::size_t>(s) >= count) {
+        const KeptSample kept = kept_sample(kept_, sampler, x, y, static_cast<std::size_t>(s));
+        if (kept.sample == nullptr) {
             return;
         }
-        const Sample& sample = kept_.samples[first + static_cast<std::size_t>(s)];
-        weight *=
-            count == per_pixel ? 1 : static_cast<float>(per_pixel) / static_cast<float>(count);
+        const Sample& sample = *kept.sample;
+        weight *= kept.density;
         sum += weight;
         line(text_, at_ray,
              number_text(weight) + ", sample " + std::to_string(s) + " of pixel " +
@@ -445,17 +483,21 @@ void PixelTrace::finish(const Sampler& sampler, const FilterWeights& weights,
             (options.in_frame ? " of frame " + std::to_string(options.frame) : std::string()) +
             ", " + std::to_string(options.xres) + " by " + std::to_string(options.yres) +
             " pixels; points, vectors and normals are in camera space\n";
-    const auto [first, count] = kept_.part(x_, y_);
-    for (std::size_t i = 0; i < std::min(samples_.size(), count); ++i) {
-        const Sample& result = kept_.samples[first + i];
-        text_ += samples_[i].text;
+    std::size_t told = 0;
+    for (const std::size_t number : numbers_taken(sampler)) {
+        const Sample* result = kept_sample(kept_, sampler, x_, y_, number).sample;
+        if (result == nullptr || told == samples_.size()) {
+            continue;
+        }
+        text_ += samples_[told++].text;
         line(text_, at_ray,
-             "result: color " + numbers_text(result.color) + ", opacity " +
-                 numbers_text(result.opacity) + ", z " + number_text(result.z));
+             "result: color " + numbers_text(result->color) + ", opacity " +
+                 numbers_text(result->opacity) + ", z " + number_text(result->z));
     }
-    if (samples_.size() < count) {
+    const std::size_t count = kept_.part(x_, y_).count;
+    if (told < count) {
         line(text_, at_sample,
-             std::to_string(count - samples_.size()) +
+             std::to_string(count - told) +
                  " more samples are not told one by one; the list of the filter has their results");
     }
     append_filter(sampler, weights);

@@ -216,22 +216,31 @@ void Sampler::make_progressive(std::size_t pattern) {
         return hash(static_cast<std::uint32_t>(numbered(pattern)), static_cast<std::uint32_t>(use),
                     0x70726f67U);
     };
-    const auto n = static_cast<std::size_t>(per_pixel_);
-    const float open = settings_.shutter_open, close = settings_.shutter_close;
-    for (std::size_t s = 0, at = pattern * n; s < n; ++s, ++at) {
-        const auto index = static_cast<std::uint32_t>(s);
-        const UnitPoint position = progressive_point(index, seed(Use::Position));
-        x_[at] = position.x;
-        y_[at] = position.y;
-        if (moving_) {
-            const float t = shuffled_point(index, seed(Use::Time)).x;
-            time_[at] = std::clamp(open + t * (close - open), open, close);
+    const auto n = static_cast<std::uint32_t>(per_quarter());
+    std::size_t at = pattern * static_cast<std::size_t>(per_pixel_);
+    for (std::uint32_t quarter = 0; quarter < quarters; ++quarter) {
+        for (std::uint32_t index = 0; index < n; ++index, ++at) {
+            make_progressive_sample(index, quarter, at,
+                                    [&](Use use) { return hash(seed(use), quarter, 0x71756172U); });
         }
-        if (settings_.wants_lens) {
-            const UnitPoint lens = shuffled_point(index, seed(Use::Lens));
-            disc_point(static_cast<double>(lens.x), static_cast<double>(lens.y), lens_x_[at],
-                       lens_y_[at]);
-        }
+    }
+}
+
+template <class Seed>
+void Sampler::make_progressive_sample(std::uint32_t index, std::uint32_t quarter, std::size_t at,
+                                      const Seed& seed) {
+    const UnitPoint p = progressive_point(index, seed(Use::Position));
+    x_[at] = std::min((static_cast<float>(quarter & 1U) + p.x) / 2, below_one);
+    y_[at] = std::min((static_cast<float>(quarter >> 1) + p.y) / 2, below_one);
+    if (moving_) {
+        const float open = settings_.shutter_open, close = settings_.shutter_close;
+        const float t = shuffled_point(index, seed(Use::Time)).x;
+        time_[at] = std::clamp(open + t * (close - open), open, close);
+    }
+    if (settings_.wants_lens) {
+        const UnitPoint lens = shuffled_point(index, seed(Use::Lens));
+        disc_point(static_cast<double>(lens.x), static_cast<double>(lens.y), lens_x_[at],
+                   lens_y_[at]);
     }
 }
 
@@ -317,14 +326,33 @@ void Sampler::finish(SampleBlock& out) {
     pad(out.lens_x), pad(out.lens_y);
 }
 
-void Sampler::fill(const PixelRange& pixels, int each, SampleBlock& out) const {
-    const auto n = static_cast<std::size_t>(each);
+void Sampler::fill(const PixelRange& pixels, SampleBlock& out) const {
+    const auto n = static_cast<std::size_t>(per_pixel_);
     begin(pixels.area() * n, out);
     std::size_t at = 0;
     for (int py = pixels.y0; py < pixels.y1; ++py) {
         const PixelHash row(py);
         for (int px = pixels.x0; px < pixels.x1; ++px, at += n) {
-            fill_pixel(row(px), {px, py, 0, static_cast<std::uint16_t>(each)}, at, out);
+            fill_pixel(row(px), {px, py, 0, static_cast<std::uint16_t>(n)}, at, out);
+        }
+    }
+    finish(out);
+}
+
+void Sampler::fill_firsts(const PixelRange& pixels, SampleBlock& out) const {
+    const int each = settings_.least / quarters;
+    begin(pixels.area() * static_cast<std::size_t>(settings_.least), out);
+    std::size_t at = 0;
+    for (int py = pixels.y0; py < pixels.y1; ++py) {
+        const PixelHash row(py);
+        for (int px = pixels.x0; px < pixels.x1; ++px) {
+            for (int q = 0; q < quarters; ++q, at += static_cast<std::size_t>(each)) {
+                const int first = q * per_quarter();
+                fill_pixel(row(px),
+                           {px, py, static_cast<std::uint16_t>(first),
+                            static_cast<std::uint16_t>(first + each)},
+                           at, out);
+            }
         }
     }
     finish(out);

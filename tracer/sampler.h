@@ -24,14 +24,19 @@ struct SamplerSettings {
     float jitter = 1; // 0: regular grid; between: part of the way from the centre of the cell
     float shutter_open = 0, shutter_close = 0;
     bool wants_lens = false;
-    // Adaptive sampling: what every pixel gets; nx * ny is the most. 0: all pixels get them all.
-    // Otherwise the samples of a pixel are a sequence whose first n are well spread for any n.
+    // Adaptive sampling: what every pixel gets, nx * ny is the most; both are multiples of four. 0:
+    // all pixels get them all. Otherwise each quarter of a pixel has a sequence of its own, whose
+    // first n are well spread for any n, and which is independent of the others.
     int least = 0;
     std::uint32_t seed = 0; // other samples, as good: for tests and studies
 };
 // From PixelSamples, PixelVariance, Hider "jitter", Shutter and DepthOfField. Excessive sample
 // counts are reported and limited.
 [[nodiscard]] SamplerSettings sampler_settings(const rib::Options& options, base::Diag& diag);
+
+// The quarters of a pixel in adaptive sampling: upper left, upper right, lower left, lower right.
+// Samples of quarter q are numbered from q * per_pixel / 4 on.
+constexpr int quarters = 4;
 
 // Some samples of one pixel.
 struct PixelSamples {
@@ -75,10 +80,12 @@ public:
 
     [[nodiscard]] const SamplerSettings& settings() const { return settings_; }
     [[nodiscard]] int per_pixel() const { return per_pixel_; }
+    [[nodiscard]] int per_quarter() const { return per_pixel_ / quarters; }
 
-    // All samples, or the first `each`, of a rectangle of pixels. Reuses the block's memory.
-    void fill(const PixelRange& pixels, SampleBlock& out) const { fill(pixels, per_pixel_, out); }
-    void fill(const PixelRange& pixels, int each, SampleBlock& out) const;
+    // All samples of a rectangle of pixels. Reuses the block's memory.
+    void fill(const PixelRange& pixels, SampleBlock& out) const;
+    // Adaptive sampling: those that every pixel gets, quarter by quarter.
+    void fill_firsts(const PixelRange& pixels, SampleBlock& out) const;
     // The samples asked for.
     void fill(std::span<const PixelSamples> wanted, SampleBlock& out) const;
 
@@ -95,6 +102,9 @@ private:
                                                std::size_t pattern) const;
     void make_stratified(std::size_t pattern);
     void make_progressive(std::size_t pattern);
+    template <class Seed>
+    void make_progressive_sample(std::uint32_t index, std::uint32_t quarter, std::size_t at,
+                                 const Seed& seed);
     [[nodiscard]] std::size_t numbered(std::size_t pattern) const;
     void begin(std::size_t count, SampleBlock& out) const;
     void fill_pixel(std::uint32_t hash, const PixelSamples& wanted, std::size_t at,

@@ -97,7 +97,8 @@ base::Color mean_radiance(const HemisphereAnswers& answers) {
 namespace {
 
 // d mean / d rotation = 1/pi integral of L (n x w) dw, over each cell as if it were all of its
-// colour: bounded at the horizon, where [Ward92] eq. 3 divides by a cosine.
+// colour: bounded at the horizon, where [Ward92] eq. 3 divides by a cosine, and 0 where the light
+// is even, wherever in their cells the rays went.
 void add_rotation(const HemisphereAnswers& a, std::array<base::V3f, 3>& rotation) {
     const HemisphereStrata& s = a.strata;
     const auto integral = [&s](std::uint32_t ring) { // of sin^2 from the normal to the ring
@@ -105,12 +106,14 @@ void add_rotation(const HemisphereAnswers& a, std::array<base::V3f, 3>& rotation
         const float cosine = std::sqrt(1 - sin2_of_ring(s, ring));
         return 0.5f * (std::atan2(sine, cosine) - sine * cosine);
     };
+    const float sector = angle_of_sector(s, 1);
     for (std::uint32_t ring = 0; ring < s.rings; ++ring) {
         const float weight =
-            2 / static_cast<float>(s.sectors) * (integral(ring + 1) - integral(ring));
-        for (std::uint32_t i = ring * s.sectors; i < (ring + 1) * s.sectors; ++i) {
-            const base::V3f around(-a.direction[i].y, a.direction[i].x, 0);
-            add_scaled(rotation, base::normalize(around), weight, a.radiance[i]);
+            2 / pi * std::sin(0.5f * sector) * (integral(ring + 1) - integral(ring));
+        for (std::uint32_t k = 0; k < s.sectors; ++k) {
+            const float phi = angle_of_sector(s, static_cast<float>(k) + 0.5f);
+            add_scaled(rotation, {-std::sin(phi), std::cos(phi), 0}, weight,
+                       a.radiance[ring * s.sectors + k]);
         }
     }
 }

@@ -22,9 +22,7 @@ public:
         }
     }
 
-    void attributes(const rib::Attributes& a) {
-        displacement(a);
-    }
+    void attributes(const rib::Attributes& a) { displacement(a); }
 
     // Without these attributes BMRT bumps normals only, too.
     void displacement(const rib::Attributes& a) {

@@ -19,12 +19,15 @@ constexpr float steepest = 4;
 
 // In the values that are shown, 0..1. A shade that is off by `noise` shows as that much at
 // worst, a curved one by a ninth of how far it is off the plane of its neighbours.
-static float E(const char* n, float d){ const char* v=getenv(n); return v? (float)atof(v):d; }
-static const float noise = E("R_NOISE",0.004f);
-static const float bend = E("R_BEND",0.036f);
-static const float second_noise = E("R_SECOND",0.010f);
+static float E(const char* n, float d) {
+    const char* v = getenv(n);
+    return v ? (float)atof(v) : d;
+}
+static const float noise = E("R_NOISE", 0.004f);
+static const float bend = E("R_BEND", 0.036f);
+static const float second_noise = E("R_SECOND", 0.010f);
 // The parts of a split cell, off the plane through them.
-static const float part_noise = E("R_PART",0.016f);
+static const float part_noise = E("R_PART", 0.016f);
 // A cell of fewer samples is not worth being split.
 constexpr std::uint32_t least_to_split = 9;
 

@@ -23,24 +23,20 @@ protected:
         }
     }
 };
-rt::StringTable strings;
-rt::ShaderLibrary library{{}, strings, diag};
-Counters counters;
-};
 
 // --- lights
 
 TEST_F(Shading, AmbientCountsWhereNothingIsDirectional) {
     const auto a = light(shader("ambient", {floats("intensity", rib::ParamType::Float, {0.25f})}));
     const auto b = light(shader("ambient", {floats("intensity", rib::ParamType::Float, {0.5f})}));
-    sheet(1, shader("lit"), {a, b});
+    lit_sheet(1, shader("lit"), {a, b});
     expect_red(render(), [](float, float) { return 0.75f; });
 }
 
 TEST_F(Shading, PointLightFallsOffWithTheSquare) {
     const auto id = light(shader("point", {floats("intensity", rib::ParamType::Float, {4}),
                                            floats("from", rib::ParamType::Point, {0, 0, 1})}));
-    sheet(3, shader("lit"), {id});
+    lit_sheet(3, shader("lit"), {id});
     // The light is 2 above the sheet: cos = 2/d, Cl = 4/d^2.
     expect_red(render(), [](float x, float y) {
         const double d2 = static_cast<double>(x * x + y * y) + 4;
@@ -53,7 +49,7 @@ TEST_F(Shading, PointLightFallsOffWithTheSquare) {
 TEST_F(Shading, DistantLightShinesAlongItsAxisAndNotFromBehind) {
     const auto front = light(shader("distant", {floats("to", rib::ParamType::Point, {0, 3, 4})}));
     const auto behind = light(shader("distant", {floats("to", rib::ParamType::Point, {0, 0, -1})}));
-    sheet(1, shader("lit"), {front, behind});
+    lit_sheet(1, shader("lit"), {front, behind});
     expect_red(render(), [](float, float) { return 0.8f; });
 }
 
@@ -62,7 +58,7 @@ TEST_F(Shading, ConesEndAtTheirAngle) {
     const auto id = light(shader("cone", {floats("angle", rib::ParamType::Float, {angle}),
                                           floats("from", rib::ParamType::Point, {0, 0, 0}),
                                           floats("to", rib::ParamType::Point, {0, 0, 5})}));
-    sheet(2, shader("lit"), {id});
+    lit_sheet(2, shader("lit"), {id});
     expect_red(render(), [&](float x, float y) {
         const double d2 = static_cast<double>(x * x + y * y) + 4;
         const double cosine = 2 / std::sqrt(d2);
@@ -77,7 +73,7 @@ TEST_F(Shading, LightParametersLieInTheSpaceOfTheirCall) {
     const auto by_default = light(shader("point", {}, shifted));
     const auto by_value =
         light(shader("point", {floats("from", rib::ParamType::Point, {0, 0, 0})}, shifted));
-    sheet(3, shader("lit"), {by_default, by_value});
+    lit_sheet(3, shader("lit"), {by_default, by_value});
     expect_red(render(), [](float x, float y) {
         const double d2 = static_cast<double>(x * x + y * y) + 4;
         return 2 / d2 * 2 / std::sqrt(d2);
@@ -89,7 +85,7 @@ TEST_F(Shading, NonDiffuseLightsAreLeftOutAndListsAreObeyed) {
     const auto half =
         light(shader("distant", {floats("__nondiffuse", rib::ParamType::Float, {0.75f})}));
     light(shader("distant", {floats("intensity", rib::ParamType::Float, {100})})); // in no list
-    sheet(1, shader("lit"), {on, half});
+    lit_sheet(1, shader("lit"), {on, half});
     expect_red(render(), [](float, float) { return 1.25f; });
 }
 
@@ -99,7 +95,7 @@ TEST_F(Shading, CategoriesSelectLights) {
         "distant", {floats("intensity", rib::ParamType::Float, {10}), text("__category", "fill")}));
     const auto none = light(shader("distant", {floats("intensity", rib::ParamType::Float, {100})}));
     const std::vector<rib::LightId> all = {key, fill, none};
-    sheet(1, shader("lit", {text("category", "warm")}), all);
+    lit_sheet(1, shader("lit", {text("category", "warm")}), all);
     expect_red(render(), [](float, float) { return 1.0f; });
     scene.attributes[0].surface = shader("lit", {text("category", "-warm")});
     expect_red(render(), [](float, float) { return 110.0f; });
@@ -116,7 +112,7 @@ TEST_F(Shading, ShadowsOnlyWhereTheAttributeSaysSo) {
     const std::vector<rib::Param> from = {floats("from", rib::ParamType::Point, {0, 0, 1})};
     const auto with = light(shader("point", from), 0);
     const auto without = light(shader("point", from));
-    sheet(3, shader("lit"), {with, without});
+    lit_sheet(3, shader("lit"), {with, without});
     // An occluder between light and sheet that the camera does not see: half way, so its shadow is
     // twice its size.
     sheet(2, shader("flat"));
@@ -261,7 +257,7 @@ TEST_F(Shading, SameBytesWhateverThreadsAndBuckets) {
     const auto id = light(shader("point", {floats("intensity", rib::ParamType::Float, {4})}));
     sheet(1, shader("flat")).opacity = grey(0.3f);
     sheets.back().half_width = 0.7f;
-    sheet(3, shader("lit"), {id});
+    lit_sheet(3, shader("lit"), {id});
     const Image reference = render();
     for (const int threads : {1, 2, 5}) {
         for (const int bucket_px : {16, 5}) {

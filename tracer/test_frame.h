@@ -98,7 +98,7 @@ public:
         scene.primitives.back().attributes = s.attributes;
         return scene.attributes.back();
     }
-    rib::Attributes& sheet(float z, rib::ShaderId surface, std::vector<rib::LightId> lights) {
+    rib::Attributes& lit_sheet(float z, rib::ShaderId surface, std::vector<rib::LightId> lights) {
         rib::Attributes& attributes = sheet(z, surface);
         attributes.lights = std::move(lights);
         return attributes;

@@ -265,8 +265,8 @@ TEST_F(Transport, GatherSendsParameters) {
 TEST_F(Transport, LightsMayTraceToWhatTheyLight) {
     const auto traced = light(shader("tracing_light"));
     const auto glow = light(shader("ambient", {number("intensity", 0.25f)}));
-    sheet(2, shader("lit"), std::vector<rib::LightId>{traced});
-    sheet(-1, shader("lit"), std::vector<rib::LightId>{traced, glow});
+    lit_sheet(2, shader("lit"), {traced});
+    lit_sheet(-1, shader("lit"), {traced, glow});
     expect_all(render(), Plane::R, 0.25);
 }
 

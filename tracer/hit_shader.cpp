@@ -248,6 +248,10 @@ void HitShader::gather_footprint(ShadeJob& job, std::size_t i) const {
         job.widening[i] = job.footprint[i] > 0 ? t * job.spread[i] / job.footprint[i] : 1;
         return;
     }
+    if (rays_.level > 0) { // whoever traces it asks for no filter
+        job.footprint[i] = job.spread[i] = job.widening[i] = 0;
+        return;
+    }
     const float spacing_px =
         classes_.facts(frame_.world->binding(job.hits[i]).attributes).spacing_px;
     job.footprint[i] = camera_.footprint(job.oz[i] + t * job.dz[i], spacing_px);

@@ -10,7 +10,7 @@ surface dielectric(float index = 1.5)
     vector R, T;
     fresnel(In, Nf, eta, kr, kt, R, T);
     Oi = 1;
-    Ci = kr * trace(P, R);
+    Ci = kr * color trace(P, R);
     if (kr < 1)
-        Ci += (1 - kr) * trace(P, T);
+        Ci += (1 - kr) * color trace(P, T);
 }

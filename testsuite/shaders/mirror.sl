@@ -4,5 +4,5 @@ surface mirror(float Kr = 1, emits = 0)
 {
     normal Nf = faceforward(normalize(N), I);
     Oi = Os;
-    Ci = Os * (emits + Kr * trace(P, reflect(normalize(I), Nf)));
+    Ci = Os * (emits + Kr * color trace(P, reflect(normalize(I), Nf)));
 }

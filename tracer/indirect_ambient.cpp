@@ -128,7 +128,9 @@ float BatchGather::survival(std::uint32_t point) const {
 void BatchGather::find_covered() {
     Counters& counters = execution_.thread->counters;
     const bool is_rehearsal = execution_.thread->wanted != nullptr;
-    const float stretch = is_rehearsal ? 1 : IrradianceCache::slack;
+    const float stretch = diffuse_level_ > 0 ? IrradianceCache::far_slack
+                          : is_rehearsal     ? 1
+                                             : IrradianceCache::slack;
     const bool may_go_on = diffuse_level_ < light_.max_bounces();
     for (std::uint32_t i = 0; i < execution_.subject->hits.size(); ++i) {
         const DiffusePoint point = point_of(i);

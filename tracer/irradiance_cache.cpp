@@ -102,7 +102,7 @@ template <class Visit> void IrradianceCache::visit_near(const base::V3f& P, Visi
 // Cubes at least twice as wide as the reach: at most two of them along each axis.
 void IrradianceCache::put(std::uint32_t index) {
     const IrradianceRecord& record = records_[index];
-    const float reach = slack * record.max_error * record.radius;
+    const float reach = far_slack * record.max_error * record.radius;
     const std::int32_t level = static_cast<std::int32_t>(std::ceil(std::log2(2 * reach)));
     const Cell low = cell_of(record.P - base::V3f(reach), level);
     const Cell high = cell_of(record.P + base::V3f(reach), level);

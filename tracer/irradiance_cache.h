@@ -37,6 +37,8 @@ public:
     // Records reach this much farther when a picture is rendered than when it is decided where new
     // ones are needed: between the points that were asked all are covered.
     static constexpr float slack = 1.4f;
+    // And this much where they are one of many: where rays of other points hit. Their errors cancel.
+    static constexpr float far_slack = 3;
 
     struct Point {
         base::V3f P, N; // N unit

@@ -35,6 +35,8 @@ TEST(IrradianceCache, ReachesAsFarAsItsErrorAllows) {
     EXPECT_FALSE(cache.covers(point_at({2.01f, 2, 3}))); // 0.25 * 4 away
     EXPECT_TRUE(cache.lookup(point_at({2.3f, 2, 3}), IrradianceCache::slack));
     EXPECT_FALSE(cache.lookup(point_at({2.5f, 2, 3}), IrradianceCache::slack));
+    EXPECT_TRUE(cache.lookup(point_at({3.9f, 2, 3}), IrradianceCache::far_slack));
+    EXPECT_FALSE(cache.lookup(point_at({4.1f, 2, 3}), IrradianceCache::far_slack));
     // sqrt(1 - cos) reaches 0.25 at 20.36 degrees.
     EXPECT_TRUE(cache.covers(point_at({1, 2, 3}, {std::sin(0.355f), 0, std::cos(0.355f)})));
     EXPECT_FALSE(cache.covers(point_at({1, 2, 3}, {std::sin(0.357f), 0, std::cos(0.357f)})));

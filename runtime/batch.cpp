@@ -120,9 +120,17 @@ void ShadeBatch::begin(const ShaderInstance& instance, std::uint32_t count) {
     }
     // Zero everywhere: the lanes past `count` must be harmless, and clearing all is cheaper than
     // finding them.
-    std::memset(memory_.get(), 0, layout.size);
+    std::memset(memory_.get(), 0, layout.frames);
     point_to(layout, memory_.get());
     bind_params(layout, memory_.get());
+    begin_frames();
+}
+
+// All a shader needs of a new frame is its state.
+void ShadeBatch::begin_frames() {
+    for (std::uint32_t packet = 0; frame_stride_ > 0 && packet < num_packets(); ++packet) {
+        reinterpret_cast<sl_frame*>(frames_ + packet * frame_stride_)->state = 0;
+    }
 }
 
 void ShadeBatch::point_to(const Layout& layout, std::byte* memory) {
@@ -190,7 +198,7 @@ void ShadeBatch::restart() {
     const sl_object& object = instance_->object();
     finished_.assign(num_packets(), false);
     std::fill_n(lit_, num_packets(), 0U);
-    std::memset(frames_, 0, frame_stride_ * num_packets());
+    begin_frames();
     for (int i = 0; i < object.num_params; ++i) {
         const sl_param& p = object.params[i];
         if (p.is_output == 0) {

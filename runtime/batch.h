@@ -99,6 +99,7 @@ public:
 private:
     struct Layout;
     void point_to(const Layout& layout, std::byte* memory);
+    void begin_frames();
     void bind_params(const Layout& layout, std::byte* memory);
     void spread(const sl_param& p, std::byte* planes);
     [[nodiscard]] float* plane_of(float* base, int component) const {

@@ -45,7 +45,7 @@ public:
     // Predefined variables that the program did not mention count too, once it has them.
     [[nodiscard]] Axes differs(VarId id) const;
     [[nodiscard]] bool differs(VarId id, int axis) const { return (differs(id) >> axis & 1) != 0; }
-    // Loop, Scope, Illuminance, Gather: some points may leave before others.
+    // Loop, Scope, Illuminance: some points may leave before others.
     [[nodiscard]] bool splits(const Stmt& s) const { return splits_.contains(&s); }
     // ... may skip the rest of an iteration.
     [[nodiscard]] bool splits_iteration(const Stmt& s) const { return iterations_.contains(&s); }

@@ -3,6 +3,7 @@
 // The notation is described in the head of that file.
 #include "slc/builtins.h"
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 
@@ -19,7 +20,7 @@ constexpr std::uint32_t SL_PURE = PropPure, SL_CONTEXT = PropContext, SL_VARIES 
                         SL_RANDOM = PropRandom, SL_CHANNEL = PropChannel, SL_INOUT = PropInout,
                         SL_DIFF [[maybe_unused]] = PropDiff,
                         SL_LINEAR [[maybe_unused]] = PropLinear, SL_HIDDEN = PropHidden,
-                        SL_EXACT = PropExact, SL_WAITS = PropWaits;
+                        SL_EXACT = PropExact, SL_WAITS = PropWaits, SL_ASKED = PropAsked;
 
 struct RawRow {
     std::string_view name, signature, body;
@@ -35,6 +36,24 @@ constexpr RawRow raw_rows[] = {
 #undef SL_BUILTIN
 };
 #undef SL_R
+
+struct OutputPairs {
+    std::string_view body, names;
+};
+
+constexpr OutputPairs output_pairs[] = {
+#define SL_OUTPUT_PAIRS(body, names, note) {#body, names},
+#include "runtime/abi/sl_output_pairs.def"
+#undef SL_OUTPUT_PAIRS
+};
+
+bool matches(std::string_view pattern, std::string_view name) {
+    if (pattern == ":") {
+        return name.find(':') != std::string_view::npos;
+    }
+    return pattern == "*" || pattern == name ||
+           (pattern.ends_with(':') && name.starts_with(pattern));
+}
 
 ArgSpec decode_letter(char letter) {
     ArgSpec spec;
@@ -120,6 +139,9 @@ BuiltinRow decode(const RawRow& raw) {
     } else {
         row.result = decode_letter(result[0]);
     }
+    for (const OutputPairs& pairs : output_pairs) {
+        row.output_pairs = pairs.body == raw.body ? pairs.names : row.output_pairs;
+    }
     decode_args(raw.signature.substr(open + 1, raw.signature.size() - open - 2), row);
     return row;
 }
@@ -170,6 +192,21 @@ constexpr std::array<VariableRow, SL_VAR_COUNT> variables = {{
 
 BuiltinRow decode_row(std::string_view name, std::string_view signature, std::uint32_t properties) {
     return decode({name, signature, "", 0, properties, ""});
+}
+
+bool BuiltinRow::sets_pair(std::string_view name_of_pair) const {
+    bool sets = false;
+    for (std::size_t at = 0; at < output_pairs.size();) {
+        const std::size_t end = std::min(output_pairs.find(' ', at), output_pairs.size());
+        const std::string_view pattern = output_pairs.substr(at, end - at);
+        if (pattern.starts_with('-')) {
+            sets = sets && !matches(pattern.substr(1), name_of_pair);
+        } else {
+            sets = sets || matches(pattern, name_of_pair);
+        }
+        at = end + 1;
+    }
+    return sets;
 }
 
 std::span<const BuiltinRow> builtin_rows() {

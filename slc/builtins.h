@@ -31,7 +31,8 @@ enum Property : std::uint32_t {
     PropLinear = 1u << 15,
     PropHidden = 1u << 16,
     PropExact = 1u << 17,
-    PropWaits = 1u << 18
+    PropWaits = 1u << 18,
+    PropAsked = 1u << 19
 };
 
 // One place of a signature.
@@ -54,13 +55,16 @@ struct BuiltinRow {
     std::string_view signature;
     std::string_view body;
     std::string_view note;
-    std::uint64_t reads = 0;      // bits 1 << sl_variable
-    std::uint32_t properties = 0; // Property
-    ArgSpec result;               // Type::Void for none
-    std::vector<ArgSpec> args;    // without repetitions
-    bool repeats_last = false;    // +
-    bool takes_pairs = false;     // *: name/value pairs follow
-    bool takes_values = false;    // x*: any number of values follow (printf, format)
+    std::uint64_t reads = 0;       // bits 1 << sl_variable
+    std::uint32_t properties = 0;  // Property
+    ArgSpec result;                // Type::Void for none
+    std::vector<ArgSpec> args;     // without repetitions
+    bool repeats_last = false;     // +
+    bool takes_pairs = false;      // *: name/value pairs follow
+    bool takes_values = false;     // x*: any number of values follow (printf, format)
+    std::string_view output_pairs; // names of pairs that set a variable (sl_output_pairs.def)
+    // The pair sets its variable, which then is in Stmt::options, not among the arguments.
+    [[nodiscard]] bool sets_pair(std::string_view name_of_pair) const;
     [[nodiscard]] bool has(Property p) const { return (properties & p) != 0; }
 };
 

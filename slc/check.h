@@ -52,7 +52,7 @@ private:
     void return_statement(ast::Stmt& s);
     void illuminance(ast::Stmt& s);
     void gather(ast::Stmt& s);
-    void options(ast::Stmt& s, std::size_t first, bool outputs_by_default);
+    void options(ast::Stmt& s, std::size_t first, const BuiltinRow* row);
     void body(ast::Stmt& s, bool is_loop);
 
     // check_expr.cpp

@@ -260,16 +260,18 @@ void Checker::unary_costs(Expr& e) {
         e.costs.failed = true;
         return;
     }
+    Type best = Type::Void;
     for (const Type t : preference) {
         const bool fits = e.op == Op::Not ? t == Type::Float : t == Type::Float || is_triple(t);
-        if (fits && c[t] != no_cost) {
-            e.operand_types[0] = t;
-            e.costs[t] = 0;
-            settle(operand, t);
-            return;
-        }
+        best = fits && c[t] < (best == Type::Void ? no_cost : c[best]) ? t : best;
     }
-    fail(e, "operator " + std::string(op_text(e.op)) + " does not take " + describe(c));
+    if (best == Type::Void) {
+        fail(e, "operator " + std::string(op_text(e.op)) + " does not take " + describe(c));
+        return;
+    }
+    e.operand_types[0] = best;
+    e.costs[best] = 0;
+    settle(operand, best);
 }
 
 // The cheapest pair of operand types the operator takes, sl.md 2.4 rule 3.

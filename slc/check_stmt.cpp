@@ -190,7 +190,7 @@ void Checker::illuminance(ast::Stmt& s) {
         deliver(*s.exprs[next++], Type::Vector, "the axis of 'illuminance'");
         deliver(*s.exprs[next++], Type::Float, "the angle of 'illuminance'");
     }
-    options(s, next, false);
+    options(s, next, nullptr);
     body(s, true);
 }
 
@@ -206,13 +206,12 @@ void Checker::gather(ast::Stmt& s) {
     deliver(*s.exprs[2], Type::Vector, "the direction of 'gather'");
     deliver(*s.exprs[3], Type::Float, "the angle of 'gather'");
     deliver(*s.exprs[4], Type::Float, "the samples of 'gather'");
-    options(s, 5, true);
+    options(s, 5, &builtin_rows()[static_cast<std::size_t>(find_builtin_by_body("gather_ray"))]);
     body(s, true);
 }
 
-// Name/value pairs. Names with a colon ask for a value ("light:x", "surface:Ci"), except
-// "send:...".
-void Checker::options(ast::Stmt& s, std::size_t first, bool outputs_by_default) {
+// Name/value pairs of a light loop, or of the row a gather loop calls.
+void Checker::options(ast::Stmt& s, std::size_t first, const BuiltinRow* row) {
     if ((s.exprs.size() - first) % 2 != 0) {
         messages_.error(s.exprs.back()->loc, "options come in pairs of a name and a value");
         s.exprs.pop_back();
@@ -225,10 +224,8 @@ void Checker::options(ast::Stmt& s, std::size_t first, bool outputs_by_default) 
             messages_.error(name.loc, "the name of an option is a string literal");
             continue;
         }
-        const bool sends = name.text.starts_with("send:");
         const bool is_output =
-            !sends && (name.text.starts_with("light:") ||
-                       (outputs_by_default && name.text.find(':') != std::string::npos));
+            row != nullptr ? row->sets_pair(name.text) : name.text.starts_with("light:");
         const bool is_array = array_of(value) != nullptr;
         if (!is_array) {
             deliver_any(value, true);

@@ -166,6 +166,23 @@ void Emitter::fixed_arguments(Call& c) {
     if (c.row.takes_pairs || c.row.takes_values) {
         value_arguments(c, next);
     }
+    output_pairs(c);
+}
+
+// Pairs that set variables: a list of their own. The body leaves masked lanes alone.
+void Emitter::output_pairs(Call& c) {
+    if (c.row.output_pairs.empty()) {
+        return;
+    }
+    std::string list;
+    for (const auto& [name, v] : c.s.options) {
+        settle_readers(v);
+        list += (list.empty() ? "" : ", ") + std::string("{SL_TYPE_string, 0, 0, (sl_string[]){") +
+                string_literal(name) + "}}, " +
+                typed_value(v).substr(std::string("(sl_value)").size());
+    }
+    c.arguments.push_back(list.empty() ? "0" : "(sl_value[]){" + list + "}");
+    c.arguments.push_back(std::to_string(2 * c.s.options.size()));
 }
 
 // What a body <body>_d takes after the arguments of <body>.

@@ -161,6 +161,7 @@ private:
     void differences(Call& c);
     void output_argument(Call& c, VarId v);
     void value_arguments(Call& c, std::size_t first);
+    void output_pairs(Call& c);
     void spline_arguments(Call& c);
     [[nodiscard]] std::string knot_array(Call& c, std::size_t first);
     [[nodiscard]] Expr chained(Call& c);
@@ -207,7 +208,6 @@ private:
     void light_sends(const Stmt& s, const std::string& lights);
     [[nodiscard]] std::string lights_around(const Block& b) const;
     void illuminate(const Stmt& s, const Block& b);
-    void gather(const Stmt& s);
     void leave(const Stmt& s, const Block& b);
     void masked_leave(const Stmt& s, const Block& b);
     void jump(const Stmt& s, const Block& b);

@@ -110,9 +110,6 @@ void Emitter::statement(const Stmt& s, const Block& b) {
     case Op::Solar:
         illuminate(s, b);
         return;
-    case Op::Gather:
-        gather(s);
-        return;
     default:
         break;
     }
@@ -488,14 +485,6 @@ void Emitter::illuminate(const Stmt& s, const Block& b) {
     out_.open("if (sl_any(" + lit + ")) {");
     block(body);
     out_.close();
-}
-
-// Rays for a bundle of directions come with the Light issue; until then the loop runs for no ray.
-void Emitter::gather(const Stmt& s) {
-    settle_all();
-    note_place(s.loc);
-    out_.line("call->services->report(call->engine, " + std::to_string(s.loc.line) +
-              ", \"gather(): no rays yet; its body is skipped\");");
 }
 
 void Emitter::leave(const Stmt& s, const Block& b) {

@@ -13,8 +13,7 @@ bool is_construct(const Stmt& s) {
 
 // Lanes of the body are chosen by the lights, whatever the control flow around it.
 bool is_light_statement(const Stmt& s) {
-    return s.op == Op::Illuminance || s.op == Op::Illuminate || s.op == Op::Solar ||
-           s.op == Op::Gather;
+    return s.op == Op::Illuminance || s.op == Op::Illuminate || s.op == Op::Solar;
 }
 
 } // namespace
@@ -241,7 +240,7 @@ void Flow::place_statement(const Stmt& s, const Block& b) {
     for_each_read(s, [&](VarId v) { read(v, b); });
     for_each_write(s, [&](VarId v, bool whole) {
         // Options are set inside the loop, element stores leave the rest of the array.
-        const bool here = s.op != Op::Illuminance && s.op != Op::Gather;
+        const bool here = s.op != Op::Illuminance;
         write(v, b, whole && here);
     });
     if (s.op == Op::Illuminance) {

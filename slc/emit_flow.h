@@ -20,7 +20,7 @@ struct BlockInfo {
     bool shares_mask = true;
 };
 
-// Loop, Scope, Illuminance, Gather.
+// Loop, Scope, Illuminance.
 struct ConstructInfo {
     bool masked = false;              // lanes leave it at different times
     bool has_masked_continue = false; // ... or skip the rest of an iteration

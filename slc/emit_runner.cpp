@@ -54,6 +54,7 @@ void no_shadeop(void*, sl_string, std::uint32_t, std::uint32_t, const sl_value*,
 void no_rays(void*, sl_ray_query* query) {
     query->hit = 0;
 }
+void plain_direction(void*, std::uint32_t, std::uint32_t, const float*, const float*, float*) {}
 std::int32_t zero(void*) {
     return 0;
 }
@@ -81,6 +82,7 @@ sl_services empty_services(rt::StringTable&) {
     s.match = no_match;
     s.shadeop = no_shadeop;
     s.rays = no_rays;
+    s.solar_direction = plain_direction;
     return s;
 }
 

@@ -177,6 +177,7 @@ void Emitter::question(Call& c) {
     if (c.row.takes_pairs) {
         value_arguments(c, c.row.args.size() + (c.row.has(PropChannel) ? 1 : 0));
     }
+    output_pairs(c);
 }
 
 void Emitter::waiting_call(const Stmt& s, const Block& b) {
@@ -216,6 +217,7 @@ void Emitter::waiting_call(const Stmt& s, const Block& b) {
             output_argument(answer, s.args[arg_position(row, r)]);
         }
     }
+    output_pairs(answer);
     Expr value;
     value.varying = true;
     value.form = form_of(row.result.kind == ArgKind::Exact ? row.result.type : Type::Vector);

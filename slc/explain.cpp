@@ -9,6 +9,7 @@
 #include "slc/ir_util.h"
 #include "slc/liveness.h"
 #include "slc/passes.h"
+#include "slc/suspension.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -72,6 +73,8 @@ private:
     void operator_slice(const Stmt& s);
     void evaluation_end();
     void suspensions();
+    [[nodiscard]] static std::string user_name(const BuiltinRow& row);
+    [[nodiscard]] std::string saved_text(const Suspensions& waits, const Stmt& call) const;
     void line(const std::string& text) { out_ += text + "\n"; }
     [[nodiscard]] std::string place(Loc loc) const;
     [[nodiscard]] std::string lines_of(const Liveness& slice) const;
@@ -255,22 +258,47 @@ void Explanation::evaluation_end() {
     line(std::string(share) + "; with differences the shader has " + std::to_string(after));
 }
 
-// Where a shader may have to wait for answers that the engine gives for many points at once.
+// What a call was in the source: `trace` for `trace_d`.
+std::string Explanation::user_name(const BuiltinRow& row) {
+    std::string name(row.name);
+    const bool has_differences = row.has(PropHidden) && name.ends_with("_d");
+    return has_differences ? name.substr(0, name.size() - 2) : name;
+}
+
+// What outlives a point where the packet is suspended, in bytes of 8 lanes.
+std::string Explanation::saved_text(const Suspensions& waits, const Stmt& call) const {
+    constexpr int lanes = 8;
+    if (waits.state(call) == 0) {
+        return "";
+    }
+    const SuspensionPoint& point = waits.points()[static_cast<std::size_t>(waits.state(call)) - 1];
+    std::size_t bytes = 0;
+    std::string names;
+    for (const VarId v : point.saved) {
+        const Var& saved = resolved_.vars[static_cast<std::size_t>(v)];
+        bytes += saved_bytes(saved, lanes);
+        names += " " + saved.name;
+    }
+    return ", waits; saves " + std::to_string(bytes) + " bytes" + (names.empty() ? "" : ":") +
+           names;
+}
+
+// Where a shader asks the engine for rays and maps, and where it waits for the answer.
 void Explanation::suspensions() {
     line("suspension points");
-    bool any = false;
-    for_each_statement(program_.body, [&](const Stmt& s) {
-        const bool is_call =
-            s.op == Op::Call && (builtin_of(s).properties & (PropTraces | PropTextures)) != 0;
-        if (is_call || s.op == Op::Gather) {
-            const std::string name =
-                is_call ? std::string(builtin_of(s).name) + "()" : std::string("gather");
-            const bool traces = !is_call || builtin_of(s).has(PropTraces);
-            line("  " + padded(name, 19) + place(s.loc) + (traces ? ", rays" : ", maps"));
-            any = true;
+    std::set<std::string> seen; // a map may be looked up at each of the three points
+    const Suspensions waits(resolved_);
+    for_each_statement(resolved_.body, [&](const Stmt& s) {
+        if (s.op == Op::Call && (builtin_of(s).properties & (PropTraces | PropTextures)) != 0) {
+            const bool traces = builtin_of(s).has(PropTraces);
+            std::string text("  " + padded(user_name(builtin_of(s)) + "()", 19) + place(s.loc) +
+                             (traces ? ", rays" : ", maps") + saved_text(waits, s));
+            if (seen.insert(text).second) {
+                line(text);
+            }
         }
     });
-    if (!any) {
+    if (seen.empty()) {
         line("  none");
     }
 }

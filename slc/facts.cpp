@@ -105,9 +105,6 @@ void Analysis::statement(const Stmt& s) {
     case Op::Illuminate:
         facts_.facts |= SL_FACT_directional;
         break;
-    case Op::Gather:
-        facts_.facts |= SL_FACT_traces;
-        break;
     default:
         break;
     }

@@ -176,9 +176,6 @@ void Interpreter::statement(const Stmt& s, Mask& mask) {
     case Op::Solar:
         illuminate(s, mask);
         break;
-    case Op::Gather:
-        gather(s, mask);
-        break;
     case Op::Call:
         call(s, mask);
         round(s, mask);
@@ -612,30 +609,6 @@ void Interpreter::illuminate(const Stmt& s, Mask& mask) {
     part(s, 0, 0, inside);
     for (std::size_t p = 0; p < mask.size(); ++p) {
         mask[p] = static_cast<char>(inside[p] != 0 || outside[p] != 0);
-    }
-}
-
-// No rays here: every sample misses.
-void Interpreter::gather(const Stmt& s, Mask& mask) {
-    const Mask none(mask.size(), 0);
-    double samples = 0;
-    for (int p = 0; p < num_points_; ++p) {
-        samples =
-            std::max(samples, mask[static_cast<std::size_t>(p)] != 0 ? at(s.args[4], p).f() : 0.0);
-    }
-    Mask left(mask.size(), 0);
-    for (int i = 0; i < samples && any(mask) && steps_ < max_steps_; ++i) {
-        frames_.push_back({true, none, none});
-        block(s.bodies[1], mask);
-        for (std::size_t p = 0; p < mask.size(); ++p) {
-            mask[p] = static_cast<char>(mask[p] != 0 || frames_.back().continued[p] != 0);
-            left[p] = static_cast<char>(left[p] != 0 || frames_.back().left[p] != 0);
-        }
-        frames_.pop_back();
-        steps_ += mask.size();
-    }
-    for (std::size_t p = 0; p < mask.size(); ++p) {
-        mask[p] = static_cast<char>(mask[p] != 0 || left[p] != 0);
     }
 }
 

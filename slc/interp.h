@@ -27,7 +27,11 @@ struct RayQuestion {
     int kind = 0; // SL_RAYS_*
     Triple3 P{0, 0, 0}, D{0, 0, 0};
     Triple3 P_u{0, 0, 0}, P_v{0, 0, 0}, D_u{0, 0, 0}, D_v{0, 0, 0};
+    double angle = 0; // gather
+    int sample = 0; // of option "samples"
+    std::string category;
     std::map<std::string, Value> options; // name/value pairs
+    std::map<std::string, Type> wanted;   // pairs that set a variable
 };
 
 struct RayAnswer {
@@ -36,6 +40,7 @@ struct RayAnswer {
     double distance = 0;
     Triple3 Phit{0, 0, 0}, Nhit{0, 0, 0}, Pmiss{0, 0, 0}, Rmiss{0, 0, 0};
     double level_missed = 0;
+    std::map<std::string, Value> found; // of what is wanted
 };
 
 // The engine as the interpreter sees it. Every method has a default, so that a test overrides what
@@ -123,7 +128,7 @@ public:
 
 private:
     using Mask = std::vector<char>;
-    struct Frame { // Loop, Illuminance, Gather or Scope around the current statement
+    struct Frame { // Loop, Illuminance or Scope around the current statement
         bool is_loop = false;
         Mask left;      // points that broke out or returned
         Mask continued; // points that wait for the next round
@@ -147,7 +152,6 @@ private:
     void light_body(const Stmt& s, int light, const Mask& mask, Mask& running);
     void illuminate(const Stmt& s, Mask& mask);
     bool emit_direction(const Stmt& s, int point, Triple3& L);
-    void gather(const Stmt& s, Mask& mask);
     void round(const Stmt& s, const Mask& mask);
 
     // interp_call.cpp

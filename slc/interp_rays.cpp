@@ -28,6 +28,8 @@ constexpr RayRow ray_rows[] = {
     {"fulltrace_d", SL_RAYS_fulltrace},   {"rayhittest", SL_RAYS_hittest},
     {"visibility", SL_RAYS_transmission}, {"transmission", SL_RAYS_transmission},
     {"occlusion", SL_RAYS_occlusion},     {"indirectdiffuse", SL_RAYS_indirect},
+    {"shadow_rays_c", SL_RAYS_shadow},    {"shadow_rays_f", SL_RAYS_shadow},
+    {"gather_ray", SL_RAYS_gather},       {"gather_ray_d", SL_RAYS_gather},
 };
 
 Value triple(const Triple3& t) {
@@ -59,9 +61,42 @@ Value result_of(const RayQuestion& q, const RayAnswer& a) {
         return Value(a.level_missed);
     case SL_RAYS_occlusion:
         return Value(a.C[0]);
+    case SL_RAYS_gather:
+        return Value(a.hit ? 1.0 : 0.0);
+    case SL_RAYS_shadow:
+        return triple({1 - a.C[0], 1 - a.C[1], 1 - a.C[2]});
     default:
         return triple(a.C);
     }
+}
+
+RayQuestion ray_question(const BuiltinRow& row, int kind, const std::vector<Value>& args) {
+    RayQuestion q;
+    q.kind = kind;
+    std::size_t next = 0;
+    if (kind == SL_RAYS_gather) {
+        q.category = args[next++].text();
+    }
+    q.P = args[next++].triple();
+    q.D = args[next++].triple();
+    if (row.body.ends_with("_d")) {
+        for (Triple3* const d : {&q.P_u, &q.D_u, &q.P_v, &q.D_v}) {
+            *d = args[next++].triple();
+        }
+    }
+    if (kind == SL_RAYS_gather) {
+        q.angle = args[next].f();
+        q.sample = static_cast<int>(args[next + 1].f());
+    } else if (kind == SL_RAYS_occlusion || kind == SL_RAYS_indirect) {
+        q.options["samples"] = args[next];
+    }
+    for (std::size_t i = row.args.size(); row.takes_pairs && i + 1 < args.size(); i += 2) {
+        q.options[args[i].text()] = args[i + 1];
+    }
+    if (kind == SL_RAYS_gather) {
+        q.options["samples"] = args[next + 2];
+    }
+    return q;
 }
 
 } // namespace
@@ -73,24 +108,18 @@ bool Interpreter::rays(const Stmt& s, int point, std::vector<Value>& args, Value
     if (known == std::end(ray_rows)) {
         return false;
     }
-    RayQuestion q;
-    q.kind = known->kind;
-    q.P = args[0].triple();
-    q.D = args[1].triple();
-    if (row.body.ends_with("_d")) {
-        q.P_u = args[2].triple();
-        q.D_u = args[3].triple();
-        q.P_v = args[4].triple();
-        q.D_v = args[5].triple();
-    }
-    if (q.kind == SL_RAYS_occlusion || q.kind == SL_RAYS_indirect) {
-        q.options["samples"] = args[2];
-    }
-    for (std::size_t i = row.args.size(); row.takes_pairs && i + 1 < args.size(); i += 2) {
-        q.options[args[i].text()] = args[i + 1];
+    RayQuestion q = ray_question(row, known->kind, args);
+    for (const auto& [name, id] : s.options) {
+        q.wanted[name] = var(id).type;
     }
     RayAnswer answer;
     host_.rays(point, q, answer);
+    for (const auto& [name, id] : s.options) {
+        const auto it = answer.found.find(name);
+        if (it != answer.found.end()) {
+            at(id, point) = it->second;
+        }
+    }
     std::vector<Value> outputs = outputs_of(*known, q, answer);
     std::size_t next = 0;
     for (std::size_t i = 0; i < row.args.size(); ++i) {
@@ -99,6 +128,9 @@ bool Interpreter::rays(const Stmt& s, int point, std::vector<Value>& args, Value
         }
     }
     result = result_of(q, answer);
+    if (row.body == "shadow_rays_f") {
+        result = Value((result.at(0) + result.at(1) + result.at(2)) / 3);
+    }
     return true;
 }
 

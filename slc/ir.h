@@ -118,7 +118,7 @@ enum class Op : std::uint8_t {
     If,       // args[0] condition; bodies[0] then, bodies[1] else (may be empty)
     Loop,     // bodies[0] computes the condition args[0]; bodies[1] the body; bodies[2] the step
               // (Continue goes there)
-    Break,    // leaves `levels` enclosing loops (Loop, Illuminance, Gather)
+    Break,    // leaves `levels` enclosing loops (Loop, Illuminance)
     Continue, // leaves levels-1 loops, continues the next
     Scope,    // bodies[0]; Leave inside ends it (inlined function with early return, or the shader
               // body)
@@ -126,20 +126,18 @@ enum class Op : std::uint8_t {
     Illuminance, // args: P [, axis, angle]; category in args of name `category`: see has_*;
                  // bodies[0]
     Illuminate,  // args: from [, axis, angle]; bodies[0]
-    Solar,       // args: [axis, angle]; bodies[0]
-    Gather       // args: category, P, direction, angle, samples; options as pairs; bodies[0] hit,
-                 // bodies[1] miss
+    Solar        // args: [axis, angle]; bodies[0]
 };
 
 struct Stmt {
     Op op = Op::Copy;
     VarId dst = no_var;
     std::vector<VarId> args;
-    int builtin = -1;        // Call, Gather: row in sl_builtins.def
+    int builtin = -1;        // Call: row in sl_builtins.def
     int levels = 1;          // Break, Continue, Leave
     VarId category = no_var; // Illuminance: string operand, or no_var
     // Illuminance options as pairs: "lightcache", "light:x" (variable that is set), "send:light:x";
-    // Gather alike
+    // Call: pairs that set a variable (BuiltinRow::sets_pair)
     std::vector<std::pair<std::string, VarId>> options;
     std::vector<std::vector<Stmt>> bodies;
     Loc loc;

@@ -299,10 +299,10 @@ Stmt IrParser::statement() {
         w = word();
     }
     int op = 0;
-    while (op <= static_cast<int>(Op::Gather) && !w.is(op_info(static_cast<Op>(op)).text)) {
+    while (op <= static_cast<int>(Op::Solar) && !w.is(op_info(static_cast<Op>(op)).text)) {
         ++op;
     }
-    if (op > static_cast<int>(Op::Gather)) {
+    if (op > static_cast<int>(Op::Solar)) {
         fail("unknown operation " + w.text);
     }
     s.op = static_cast<Op>(op);
@@ -331,13 +331,13 @@ Stmt IrParser::statement() {
 // A variable name; "levels n"; "category name"; "option "x" name". Variables may be called like
 // these words, so the meaning goes by the operation.
 void IrParser::operands(Stmt& s, const Word& w) {
-    const bool is_light = s.op == Op::Illuminance || s.op == Op::Gather;
+    const bool has_options = s.op == Op::Illuminance || s.op == Op::Call;
     if (w.is("levels") && (s.op == Op::Break || s.op == Op::Continue || s.op == Op::Leave)) {
         s.levels = number();
-    } else if (w.is("category") && is_light && s.category == no_var && !s.args.empty() &&
-               !at('@')) {
+    } else if (w.is("category") && s.op == Op::Illuminance && s.category == no_var &&
+               !s.args.empty() && !at('@')) {
         s.category = name();
-    } else if (w.is("option") && is_light && at('"')) {
+    } else if (w.is("option") && has_options && at('"')) {
         std::string option = word().text;
         s.options.emplace_back(std::move(option), name());
     } else {

@@ -15,7 +15,7 @@ const OpInfo& op_info(Op op) {
 #include "slc/ir_ops.def"
 #undef SLC_OP
     };
-    static_assert(std::size(infos) == static_cast<std::size_t>(Op::Gather) + 1);
+    static_assert(std::size(infos) == static_cast<std::size_t>(Op::Solar) + 1);
     return infos[static_cast<std::size_t>(op)];
 }
 
@@ -23,8 +23,7 @@ bool option_is_output(const Stmt& s, std::string_view name) {
     if (name.starts_with("send:")) {
         return false;
     }
-    return s.op == Op::Gather ? name.find(':') != std::string_view::npos
-                              : name.starts_with("light:");
+    return s.op == Op::Call || name.starts_with("light:");
 }
 
 void renumber(Block& b, const std::vector<VarId>& to) {

@@ -46,10 +46,10 @@ struct OpInfo {
 }
 
 [[nodiscard]] inline bool is_loop(Op op) {
-    return op == Op::Loop || op == Op::Illuminance || op == Op::Gather;
+    return op == Op::Loop || op == Op::Illuminance;
 }
 
-// Options of light statements that set a variable: "light:x", "surface:Ci"; not "send:...".
+// Options that set a variable: "light:x" of light statements, not "send:..."; all of calls.
 [[nodiscard]] bool option_is_output(const Stmt& s, std::string_view name);
 
 // Other shaders run meanwhile, or are asked, and may look at this one's output parameters: lights,

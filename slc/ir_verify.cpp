@@ -221,7 +221,6 @@ void Verifier::types(const Stmt& s) {
     case Op::Illuminance:
     case Op::Illuminate:
     case Op::Solar:
-    case Op::Gather:
         ok = light_operands(s);
         break;
     case Op::Load:
@@ -264,10 +263,6 @@ bool Verifier::light_operands(const Stmt& s) const {
     for (const auto& [name, id] : s.options) {
         ok = ok && (var(id).kind != VarKind::Const || !option_is_output(s, name));
     }
-    if (s.op == Op::Gather) {
-        return ok && type(0) == Type::String && is_triple(type(1)) && is_triple(type(2)) &&
-               type(3) == Type::Float && type(4) == Type::Float;
-    }
     const std::size_t axis = s.op == Op::Solar ? 0 : 1;
     return ok && (n == axis || n == axis + 2) && (axis == 0 || is_triple(type(0))) &&
            (n == axis || (is_triple(type(axis)) && type(axis + 1) == Type::Float));
@@ -309,6 +304,11 @@ void Verifier::difference(const Stmt& s) {
 // The first `num_args` operands are the row's arguments.
 void Verifier::arguments(const Stmt& s, std::size_t num_args) {
     const BuiltinRow& row = builtin_of(s);
+    for (const auto& [name, id] : s.options) {
+        if (!row.sets_pair(name) || var(id).kind == VarKind::Const) {
+            complain(s, "pair " + name + " of " + std::string(row.name) + " sets no variable");
+        }
+    }
     const std::size_t channel = row.has(PropChannel) ? 1 : 0;
     const std::size_t fixed = row.args.size() + channel;
     const bool extras = row.repeats_last || row.takes_pairs || row.takes_values;

@@ -267,7 +267,6 @@ void Liveness::statement(const Stmt& s, VarSet& live) {
         scope(s, live);
         break;
     case Op::Illuminance:
-    case Op::Gather:
         light_loop(s, live);
         break;
     case Op::Illuminate:

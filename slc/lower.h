@@ -113,9 +113,23 @@ private:
     struct WriteBack { // element of an array that a call sets
         VarId array = no_var, index = no_var, element = no_var;
     };
+    struct BuiltinArgs { // of a call in the making
+        std::vector<VarId> args;
+        std::vector<std::pair<std::string, VarId>> outputs; // pairs the function sets
+        std::vector<WriteBack> back;
+        bool has_outputs = false;
+    };
+    BuiltinArgs builtin_args(const ast::Expr& e);
     VarId output_argument(const ast::Expr& e, std::vector<WriteBack>& back);
     void write_back(const std::vector<WriteBack>& back, Loc loc);
     VarId inline_call(const ast::Expr& e);
+
+    // lower_rays.cpp: maps that are rays
+    VarId map_or_rays(const ast::Expr& e, const BuiltinRow& row, BuiltinArgs call, VarId into);
+    VarId reflection(const BuiltinRow& row, const std::vector<VarId>& args, Loc loc);
+    VarId traced_shadow(const BuiltinRow& row, const std::vector<VarId>& args, Loc loc);
+    VarId mean_of_corners(const BuiltinRow& row, const std::vector<VarId>& args, Loc loc);
+
     void bind_reference(const ast::Symbol& formal, const ast::Expr& arg,
                         std::vector<WriteBack>& back);
 
@@ -145,6 +159,12 @@ private:
     int num_constants_ = 0;
     int depth_ = 0;
 };
+
+// Argument i of a call of a built-in function is the value of a pair that the function sets.
+[[nodiscard]] bool sets_pair_at(const ast::Expr& e, std::size_t i);
+
+// The name that makes a map function trace rays; null: none does.
+[[nodiscard]] const char* ray_name(const BuiltinRow& row);
 
 // True if evaluating e may change a variable.
 [[nodiscard]] bool has_effects(const ast::Expr& e);

@@ -101,37 +101,50 @@ VarId Lowering::builtin_call(const Expr& e, VarId into) {
     if (e.by_component) {
         return call_by_component(e, into);
     }
-    std::vector<VarId> args;
-    std::vector<WriteBack> back;
-    bool has_outputs = false;
+    BuiltinArgs call = builtin_args(e);
+    if (ray_name(row) != nullptr) {
+        return map_or_rays(e, row, std::move(call), into);
+    }
+    VarId dst = no_var;
+    if (e.type != Type::Void) {
+        dst = call.has_outputs ? temp(e.type, e.loc) : target(e.type, into, e.loc);
+    }
+    Stmt& s = emit(Op::Call, dst, std::move(call.args), e.loc);
+    s.builtin = e.builtin;
+    s.options = std::move(call.outputs);
+    write_back(call.back, e.loc);
+    return dst;
+}
+
+Lowering::BuiltinArgs Lowering::builtin_args(const Expr& e) {
+    const BuiltinRow& row = builtin_rows()[static_cast<std::size_t>(e.builtin)];
+    BuiltinArgs call;
     for (std::size_t i = 0; i < e.args.size(); ++i) {
         const Expr& arg = *e.args[i];
         const bool is_output = i < row.args.size() && row.args[i].is_output;
-        has_outputs = has_outputs || is_output;
-        if (is_output) {
-            args.push_back(output_argument(arg, back));
+        const bool is_pair = i + 1 < e.args.size() && sets_pair_at(e, i + 1);
+        call.has_outputs = call.has_outputs || is_output || is_pair;
+        if (is_pair && !is_whole_array(*e.args[i + 1])) {
+            ++i;
+            call.outputs.emplace_back(arg.text, output_argument(*e.args[i], call.back));
+        } else if (is_output) {
+            call.args.push_back(output_argument(arg, call.back));
         } else if (is_whole_array(arg)) {
-            args.push_back(variable(*arg.symbol, arg.loc));
+            call.args.push_back(variable(*arg.symbol, arg.loc));
         } else {
             const VarId id =
                 e.arg_types[i] == Type::Void ? value(arg) : value_as(arg, e.arg_types[i]);
             const bool changes_later =
                 std::any_of(e.args.begin() + static_cast<std::ptrdiff_t>(i) + 1, e.args.end(),
                             [](const Expr* x) { return has_effects(*x); });
-            args.push_back(changes_later ? protect(id, arg.loc) : id);
+            call.args.push_back(changes_later ? protect(id, arg.loc) : id);
         }
         if (i == 0 && row.has(PropChannel)) {
-            args.push_back(arg.channel != nullptr ? value_as(*arg.channel, Type::Float)
-                                                  : constant(0));
+            call.args.push_back(arg.channel != nullptr ? value_as(*arg.channel, Type::Float)
+                                                       : constant(0));
         }
     }
-    VarId dst = no_var;
-    if (e.type != Type::Void) {
-        dst = has_outputs ? temp(e.type, e.loc) : target(e.type, into, e.loc);
-    }
-    emit(Op::Call, dst, std::move(args), e.loc).builtin = e.builtin;
-    write_back(back, e.loc);
-    return dst;
+    return call;
 }
 
 // A function of a DSO: a hidden row takes its name with the signature, then the result and the

@@ -22,6 +22,11 @@ bool has_effects(const Expr& e) {
                 return true;
             }
         }
+        for (std::size_t i = 0; i < e.args.size(); ++i) {
+            if (sets_pair_at(e, i)) {
+                return true;
+            }
+        }
     }
     return std::any_of(e.args.begin(), e.args.end(),
                        [](const Expr* arg) { return has_effects(*arg); });

@@ -289,20 +289,51 @@ void Lowering::illuminance(const ast::Stmt& s) {
     out.bodies.push_back(std::move(inner));
 }
 
+// A loop over single rays (sl.md 4.9):
+//   gather(c, P, d, a, n, "surface:Ci", x) hit; else miss;
+//   ->  for (i = 0; i < n; i += 1) { if (ray(c, P, d, a, i, n, "surface:Ci", x)) hit; else miss; }
 void Lowering::gather(const ast::Stmt& s) {
+    const int row = row_of_body("gather_ray");
     std::vector<VarId> args =
         operands({s.exprs.begin(), s.exprs.begin() + 5},
                  {Type::String, Type::Point, Type::Vector, Type::Float, Type::Float});
-    auto pairs = option_values(s, 5);
-    Block hit = block([&] { statement(*s.body[0], false); });
-    Block miss;
-    if (s.body.size() > 1) {
-        miss = block([&] { statement(*s.body[1], false); });
+    const VarId sample = local("sample", Type::Float, 0, s.loc);
+    args.insert(args.begin() + 4, sample);
+    std::vector<std::pair<std::string, VarId>> outputs;
+    for (const auto& [name, id] : option_values(s, 5)) {
+        if (builtin_rows()[static_cast<std::size_t>(row)].sets_pair(name)) {
+            outputs.emplace_back(name, id);
+        } else {
+            args.push_back(text(name));
+            args.push_back(id);
+        }
     }
-    Stmt& out = emit(Op::Gather, no_var, std::move(args), s.loc);
-    out.options = std::move(pairs);
-    out.bodies.push_back(std::move(hit));
-    out.bodies.push_back(std::move(miss));
+    for (VarId& id : args) { // the body may change them
+        id = id == sample || var(id).array_length != 0 ? id : protect(id, s.loc);
+    }
+    const VarId count = args[5];
+    emit(Op::Copy, sample, {constant(0)}, s.loc);
+    const VarId more = temp(Type::Float, s.loc);
+    Block test = block([&] { emit(Op::Lt, more, {sample, count}, s.loc); });
+    Block round = block([&] {
+        const VarId hit = temp(Type::Float, s.loc);
+        Stmt& ray = emit(Op::Call, hit, args, s.loc);
+        ray.builtin = row;
+        ray.options = outputs;
+        Block met = block([&] { statement(*s.body[0], false); });
+        Block miss;
+        if (s.body.size() > 1) {
+            miss = block([&] { statement(*s.body[1], false); });
+        }
+        Stmt& out = emit(Op::If, no_var, {hit}, s.loc);
+        out.bodies.push_back(std::move(met));
+        out.bodies.push_back(std::move(miss));
+    });
+    Block step = block([&] { emit(Op::Add, sample, {sample, constant(1)}, s.loc); });
+    Stmt& out = emit(Op::Loop, no_var, {more}, s.loc);
+    out.bodies.push_back(std::move(test));
+    out.bodies.push_back(std::move(round));
+    out.bodies.push_back(std::move(step));
 }
 
 // Name/value pairs from expression `first` on; values to be set are the variables themselves.

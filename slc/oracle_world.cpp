@@ -47,9 +47,9 @@ bool in_category(int light, const std::string& wanted) {
     return has != negative;
 }
 
-constexpr std::string_view message_functions[] = {"lightsource", "surface",  "displacement",
-                                                  "atmosphere",  "incident", "opposite",
-                                                  "attribute",   "option",   "rendererinfo"};
+constexpr std::string_view message_functions[] = {
+    "lightsource", "surface",   "displacement", "atmosphere",   "incident",
+    "opposite",    "attribute", "option",       "rendererinfo", "rayinfo"};
 
 std::uint32_t serve_light(void* engine, const sl_light_query* query, sl_light_result* result) {
     OracleWorld& world = world_of(engine);
@@ -217,6 +217,22 @@ RayQuestion question_of(const sl_ray_query& q, std::uint32_t lane) {
             r.options[ray_texts[i]] = Value(std::string(q.text[i]));
         }
     }
+    r.angle = q.angle[lane];
+    r.sample = q.sample;
+    r.category = q.category != nullptr ? q.category : "";
+    for (std::int32_t i = 0; i < q.num_channels; ++i) {
+        const sl_ray_channel& c = q.channel[i];
+        const auto type = static_cast<Type>(c.type);
+        if (c.is_sent == 0) {
+            r.wanted[c.name] = type;
+            continue;
+        }
+        Value sent = Value::zero(type);
+        for (std::size_t k = 0; k < sent.x.size(); ++k) {
+            sent.x[k] = c.values[k * q.lanes + lane];
+        }
+        r.options[c.name] = sent;
+    }
     return r;
 }
 
@@ -229,6 +245,17 @@ void put_answer(sl_ray_query& q, std::uint32_t lane, const RayAnswer& a) {
     put_triple(q.Rmiss, lane, q.lanes, a.Rmiss);
     q.distance[lane] = static_cast<float>(a.distance);
     q.level_missed[lane] = static_cast<float>(a.level_missed);
+    for (std::int32_t i = 0; i < q.num_channels; ++i) {
+        sl_ray_channel& c = q.channel[i];
+        const auto it = a.found.find(c.name);
+        if (c.is_sent != 0 || it == a.found.end()) {
+            continue;
+        }
+        c.set |= 1U << lane;
+        for (std::size_t k = 0; k < it->second.x.size(); ++k) {
+            c.values[k * q.lanes + lane] = static_cast<float>(it->second.x[k]);
+        }
+    }
 }
 
 } // namespace
@@ -245,10 +272,12 @@ void OracleWorld::answer(sl_ray_query& query) {
 
 void OracleWorld::rays(int point, const RayQuestion& question, RayAnswer& answer) {
     const RayQuestion& q = question;
-    double options = 0.25 * q.kind;
+    double options = 0.25 * q.kind + 0.5 * q.angle + 0.25 * q.sample +
+                     0.125 * static_cast<double>(q.category.size());
     const auto is_known = [](const std::string& name) {
         return std::ranges::find(ray_numbers, name) != std::end(ray_numbers) ||
-               std::ranges::find(ray_texts, name) != std::end(ray_texts);
+               std::ranges::find(ray_texts, name) != std::end(ray_texts) ||
+               name.starts_with("send:");
     };
     for (const auto& [name, value] : q.options) {
         if (!is_known(name)) {
@@ -257,7 +286,7 @@ void OracleWorld::rays(int point, const RayQuestion& question, RayAnswer& answer
         options += value.type == Type::String ? 0.125 * static_cast<double>(value.text().size())
                                               : 0.5 * std::tanh(value.f());
     }
-    answer.hit = point % 3 != 2;
+    answer.hit = (point + q.sample) % 3 != 2;
     for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t n = (k + 1) % 3;
         const double spread = q.P_u[k] + 0.5 * q.P_v[k] + 0.25 * q.D_u[k] + 0.125 * q.D_v[k];
@@ -269,6 +298,15 @@ void OracleWorld::rays(int point, const RayQuestion& question, RayAnswer& answer
     }
     answer.distance = 1 + 0.25 * std::tanh(q.P[0] + q.D[1]);
     answer.level_missed = point % 3 == 2 ? 1 : point % 3;
+    for (const auto& [name, type] : q.wanted) { // directions of rays are known where they miss
+        Value v = Value::zero(type);
+        for (std::size_t k = 0; k < v.x.size(); ++k) {
+            v.x[k] = answer.C[k] + 0.125 * static_cast<double>(name.size());
+        }
+        if (answer.hit || name.starts_with("ray:")) {
+            answer.found[name] = v;
+        }
+    }
 }
 
 sl_services OracleWorld::services() {
@@ -308,6 +346,8 @@ sl_services OracleWorld::services() {
         return base::Pattern(pattern).matches(subject) ? 1 : 0;
     };
     s.shadeop = serve_shadeop;
+    s.solar_direction = [](void*, std::uint32_t, std::uint32_t, const float*, const float*,
+                           float*) {};
     s.rays = [](void* engine, sl_ray_query* query) { world_of(engine).answer(*query); };
     return s;
 }

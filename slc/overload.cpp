@@ -22,6 +22,8 @@ bool is_lvalue(const Expr& e) {
 
 // An expression where a function sets a variable: what is set is lost.
 constexpr std::uint32_t lost_output = 60;
+// A row whose type must be asked for (SL_ASKED): below last_resort, so that a cast finds it.
+constexpr std::uint32_t unasked = 40;
 
 } // namespace
 
@@ -174,6 +176,7 @@ void Checker::match_row(Expr& e, const BuiltinRow& row, Candidate c, std::vector
         (row.takes_pairs && (e.args.size() - fixed) % 2 != 0)) {
         return;
     }
+    c.cost += row.has(PropAsked) ? unasked : 0;
     const Type pvn = row.args.empty() ? Type::Point : pvn_kind(e, row);
     for (std::size_t i = 0; i < fixed; ++i) {
         if ((e.args[i]->channel != nullptr && !(i == 0 && row.has(PropChannel))) ||
@@ -399,8 +402,27 @@ void Checker::settle_call(Expr& e, std::optional<Type> natural) {
     settle_arguments(e);
 }
 
+// The value of a name/value pair that the function sets.
+bool sets_pair_at(const Expr& e, std::size_t i) {
+    if (e.builtin < 0) {
+        return false;
+    }
+    const BuiltinRow& row = builtin_rows()[static_cast<std::size_t>(e.builtin)];
+    return row.takes_pairs && i > row.args.size() && (i - row.args.size()) % 2 == 1 &&
+           e.args[i - 1]->kind == ExprKind::Text && row.sets_pair(e.args[i - 1]->text) &&
+           e.args[i]->kind != ExprKind::Number;
+}
+
 // What a call asks for that the language does not have, once it is settled.
 void Checker::warn_about_call(const Expr& e) {
+    for (std::size_t i = 0; i < e.args.size(); ++i) {
+        if (sets_pair_at(e, i) && array_of(*e.args[i]) == nullptr && !is_lvalue(*e.args[i])) {
+            messages_.warning(e.args[i]->loc, quoted(e.args[i - 1]->text) + " of " +
+                                                  quoted(e.text) +
+                                                  " sets a value, but this is not a variable; "
+                                                  "what is set is lost");
+        }
+    }
     if (e.by_component) {
         messages_.warning(e.loc, quoted(e.text) + " takes floats; it is applied to each component");
     }
@@ -442,7 +464,7 @@ void Checker::settle_arguments(Expr& e) {
             const auto& args = e.external != nullptr
                                    ? e.external->args
                                    : builtin_rows()[static_cast<std::size_t>(e.builtin)].args;
-            return i < args.size() && args[i].is_output;
+            return (i < args.size() && args[i].is_output) || sets_pair_at(e, i);
         };
         if (is_lvalue(arg) && is_output()) {
             mark_assigned(arg);

@@ -154,7 +154,6 @@ void Propagation::statement(const Stmt& s) {
         scope(s);
         break;
     case Op::Illuminance:
-    case Op::Gather:
         light_loop(s);
         break;
     case Op::Illuminate:

@@ -157,8 +157,7 @@ void DetailInference::statement(const Stmt& s) {
     case Op::Illuminate:
         inside(s, s.bodies[0], s.args.size() > 1);
         break;
-    case Op::Illuminance:
-    case Op::Gather: // lights and rays reach some points and not others
+    case Op::Illuminance: // lights reach some points and not others
         assign(s);
         for (const Block& b : s.bodies) {
             inside(s, b, true);

@@ -49,7 +49,7 @@ void Propagation::call_for_main(const Stmt& s, Stmt now) {
     }
     emit_for_main(std::move(now));
     for_each_write(s, [&](VarId id, bool whole) {
-        if (whole) {
+        if (whole || builtin_of(s).has(PropTraces)) {
             set_differences(id, {no_var, no_var});
         } else if (s.dst != no_var && analysis_.differs(id) != NoAxis) { // set if the call succeeds
             for (int axis = 0; axis < 2; ++axis) {
@@ -393,7 +393,8 @@ constexpr FootprintForm footprint_forms[] = {{"texture_c", "texture_c_d", 2, 0, 
                                              {"bump", "bump_d", 5, 0, true},
                                              {"bump_st", "bump_d", 5, 2, false},
                                              {"trace_c", "trace_c_d", 0, 2, false},
-                                             {"fulltrace", "fulltrace_d", 0, 2, false}};
+                                             {"fulltrace", "fulltrace_d", 0, 2, false},
+    {"gather_ray", "gather_ray_d", 1, 2, false}};
 
 const FootprintForm& footprint_form(const Stmt& s) {
     return *std::find_if(std::begin(footprint_forms), std::end(footprint_forms),

@@ -3,6 +3,8 @@
 // agrees with the interpreter, which is answered at once, wherever the waiting call stands. Rays
 // are answered by a smooth function of origin, direction, footprint and options (OracleWorld). Also
 // the table of suspension points itself: what is saved, and what is not.
+#include "slc/builtins.h"
+#include "slc/ir_util.h"
 #include "slc/oracle_compare.h"
 #include "slc/slc_testing.h"
 #include "slc/suspension.h"
@@ -171,6 +173,47 @@ constexpr WaitingCase cases[] = {
     {"DerivativeOfTrace", R"(surface t() {
         color c = trace(P, N) * u;
         Ci = Du(c); Oi = c; })"},
+    {"Gather", R"(surface t() {
+        color c = 0, x = 0.25; float d = 0, n = 0; vector r = 0;
+        gather("illuminance", P, N, 0.5, 4, "surface:Ci", x, "ray:length", d, "ray:direction", r,
+               "bias", 0.1, "send:surface:Kd", u, "label", "g") {
+            c += x + d; n += 1;
+        } else { c += color(r) * 0.125; }
+        Ci = c; Oi = n; })"},
+    {"GatherJumps", R"(surface t() {
+        color c = 0, x = 0; float n = 0;
+        gather("", P, N, 0.5, 2 + 2 * u, "surface:Ci", x) {
+            if (v > 1) continue;
+            c += x * color trace(P, N + n);
+            if (comp(c, 0) > 1.2) break;
+        } else n += 1;
+        Ci = c + x; Oi = n; })"},
+    {"GatherInGather", R"(surface t() {
+        color c = 0, x, y; float i;
+        gather("samplepattern", P, N, 1, 2, "surface:Ci", x)
+            gather("", P + vector(x), I, 1, 3, "surface:Ci", y) { c += x * y; x = y; }
+            else if (u > 1) break;
+        Ci = c; Oi = c; })"},
+    {"OutputPairs", R"(surface t(output varying color env = 0.5) {
+        vector open = 1; float o = 0.25;
+        float occ = occlusion(P, N, 8, "environmentdir", open, "environmentcolor", env);
+        color e = indirectdiffuse(P, N, 4, "occlusion", o, "maxdist", 3);
+        Ci = e * occ + color(open) * color trace(P, open); Oi = o; })"},
+    {"Reflection", R"(surface t(string name = "reflection") {
+        vector r = reflect(I, N);
+        Ci = environment("reflection", r, "samples", 2) + color environment(name, r);
+        Oi = float environment("reflection"[1], r) + float environment(name, r, r * 2, N, I);
+    })"},
+    {"TracedShadow", R"(surface t(string name = "raytrace") {
+        color c = 0;
+        illuminance (P) {
+            c += Cl * (1 - float shadow("raytrace", P, "samples", 4));
+            c += color shadow(name, P + L) * float shadow(name, P, P, P, N + P);
+        }
+        Ci = c + shadow(name, P) * color trace(P, N); Oi = 1; })"},
+    {"TracedShadowInALight", R"(light t(string name = "raytrace") {
+        illuminate (point(1, 2, 3)) { Cl = 1 - color shadow(name, Ps); }
+    })"},
     {"Nested", R"(surface t() {
         color c = 0; float i;
         illuminance (P) {
@@ -253,6 +296,45 @@ TEST(SuspensionTable, OtherArmsAreYetToRun) {
                  "if (u > 0.5) c = trace(P, N); else c = a; Ci = c; Oi = Os; }");
     const auto saved = saved_at(program, 0);
     EXPECT_NE(std::find(saved.begin(), saved.end(), "a"), saved.end());
+}
+
+TEST(SuspensionTable, NamesThatAreKnownAskForNothing) {
+    const Program program =
+        resolved("surface t() { Ci = color environment(\"room.env\", N); Oi = Os; }");
+    EXPECT_TRUE(Suspensions(program).empty());
+    EXPECT_EQ(analyse(program).facts & SL_FACT_traces, 0U);
+    EXPECT_EQ(analyse(program).needed >> SL_VAR_P & 1U, 0U);
+}
+
+std::size_t count_calls(const Block& b, std::string_view body) {
+    std::size_t n = 0;
+    for (const Stmt& s : b) {
+        n += s.op == Op::Call && builtin_of(s).body == body ? 1 : 0;
+        for (const Block& inner : s.bodies) {
+            n += count_calls(inner, body);
+        }
+    }
+    return n;
+}
+
+// The colour, unless a float is asked for outright.
+TEST(TraceOverload, IsAColourInExpressions) {
+    const auto count = [](const char* body, std::string_view wanted) {
+        const Program program = resolved(testing::surface(body).c_str());
+        return count_calls(program.body, wanted);
+    };
+    for (const char* body :
+         {"Ci = 0; Ci += trace(P, N) * (1 + u);", "float Kr = u; Ci = Kr * trace(P, N);",
+          "color a = u; color x = a + u * trace(P, N); Ci = x;", "Ci = -trace(P, N);",
+          "Ci = trace(P, N) / 2 + trace(P, N) * trace(P, I);", "Ci = u > v ? trace(P, N) : 0;",
+          "Ci = mix(trace(P, N), Cs, u);"}) {
+        EXPECT_EQ(count(body, "trace_f"), 0U) << body;
+        EXPECT_GE(count(body, "trace_c_d"), 1U) << body;
+    }
+    for (const char* body : {"Ci = float trace(P, N);", "float d = trace(P, N); Ci = d;",
+                             "float d; d = trace(P, N); Ci = d;", "Ci = 2 * float trace(P, N);"}) {
+        EXPECT_EQ(count(body, "trace_f"), 1U) << body;
+    }
 }
 
 TEST(SuspensionTable, OnlySurfacesWait) {

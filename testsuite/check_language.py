@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks that docs/shading-language.md and the grammars below editors/ are those of the tables; --fix writes them.
 
-In: slc/tokens.def, runtime/abi/sl_builtins.def, runtime/abi/sl_variables.def. Out: the tables between the marks of the
+In: slc/tokens.def and, in runtime/abi, sl_builtins.def, sl_variables.def, sl_ray_options.def, sl_output_pairs.def. Out: the tables between the marks of the
 page, and the generated files of editors/. Also checks that the JSON files parse, that every word and built-in is in
 both grammars, and, where vim is installed, that it loads the syntax.
 """
@@ -51,6 +51,12 @@ class Tables:
         assert rows == len(row.findall(text)), "sl_builtins.def has rows this script does not read"
         self.variables = re.findall(r'^SL_VAR\((\w+),\s*(\w+),\s*(\w+),\s*([\w|]+),\s*([\w|]+),\s*"([^"]*)"\)',
                                     read("runtime/abi/sl_variables.def"), re.MULTILINE)
+        rays = read("runtime/abi/sl_ray_options.def")
+        text_of = r'"((?:[^"\\]|\\.)*)"'
+        self.ray_numbers = re.findall(r"^SL_RAY_NUMBER\((\w+), ([^,]+), " + text_of + r"\)", rays, re.MULTILINE)
+        self.ray_texts = re.findall(r"^SL_RAY_TEXT\((\w+), " + text_of + r"\)", rays, re.MULTILINE)
+        self.output_pairs = re.findall(r"^SL_OUTPUT_PAIRS\((\w+), " + text_of + ", " + text_of + r"\)",
+                                       read("runtime/abi/sl_output_pairs.def"), re.MULTILINE)
         self.names = sorted({name for _, name, _, _, _ in self.builtins}, key=str.lower)
 
 
@@ -111,6 +117,28 @@ def variable_table(tables):
     return text + f"\n{legend}; bold: may be assigned there.\n\n"
 
 
+def ray_table(tables):
+    text = "\n| pair | default | |\n|---|---|---|\n"
+    defaults = {"1e30f": "none", "1.57079632679489662f": "pi/2"}
+    for name, default, note in tables.ray_numbers:
+        text += f"| `\"{name}\"` float | {defaults.get(default, default)} | {cell(note)} |\n"
+    for name, note in tables.ray_texts:
+        text += f"| `\"{name}\"` string | | {cell(note)} |\n".replace('\\"', '"')
+    text += "\nPairs that set a variable; what is not found keeps its value:\n\n| function | names | |\n|---|---|---|\n"
+    for body, names, note in tables.output_pairs:
+        if note:
+            function = {"gather_ray": "gather"}.get(body, body)
+            text += f"| `{function}` | {spelt_names(names)} | {cell(note)} |\n".replace('\\"', '"')
+    return text + "\n"
+
+
+def spelt_names(names):
+    spelt = {":": "any with a colon", "*": "any"}
+    wanted = [spelt.get(n) or f"`{n}`" for n in names.split() if not n.startswith("-")]
+    but = [f"`{n[1:]}`" for n in names.split() if n.startswith("-")]
+    return ", ".join(wanted) + (" but " + ", ".join(but) if but else "")
+
+
 def word_list(tables):
     rows = (("types", tables.types), ("storage", tables.storage), ("control", tables.control),
             ("shader types", SHADERS.values()))
@@ -120,7 +148,7 @@ def word_list(tables):
 def page(tables):
     text = read(PAGE)
     for mark, part in (("words", word_list(tables)), ("variables", variable_table(tables)),
-                       ("builtins", builtin_tables(tables))):
+                       ("builtins", builtin_tables(tables)), ("rays", ray_table(tables))):
         pattern = re.compile(f"(<!-- {mark}, from the tables -->\n).*?(<!-- end -->)", re.DOTALL)
         assert pattern.search(text), f"{PAGE} has no mark for {mark}"
         text = pattern.sub(lambda m, part=part: m[1] + part + m[2], text, count=1)

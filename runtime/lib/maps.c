@@ -175,6 +175,12 @@ static void take_channels(point_samples* p, const sl_value* values, int n, const
     }
 }
 
+static void take_point_options(point_samples* p, const sl_value* values, int n) {
+    for (int i = 0; i + 1 < n; i += 2)
+        if (is_text(&values[i]) && is_named(text_of(&values[i])))
+            take_point_option(p, text_of(&values[i]), &values[i + 1]);
+}
+
 static uint32_t bake_points(const sl_call* call, point_samples* p, const sl_value* values, int n) {
     const sl_value* pair[SL_POINT_CHANNELS_MAX];
     take_channels(p, values, n, pair);

@@ -286,11 +286,14 @@ F FN(bake3d)(CALL, sl_string file, sl_string channels, V p, V n, const sl_value*
     FN(point_query_)(PASS, &points, file, p, n);
     return FN(succeeded_)(PASS, points.query.mask ? bake_points(call, &points, values, num) : 0);
 }
-F FN(texture3d)(CALL, sl_string file, V p, V n, const sl_value* values, int num) {
+F FN(texture3d)(CALL, sl_string file, V p, V n, const sl_value* values, int num,
+                const sl_value* outputs, int num_outputs) {
     point_samples points;
     if (!is_named(file))
         return K(0);
     FN(point_query_)(PASS, &points, file, p, n);
-    return FN(succeeded_)(PASS, points.query.mask ? read_points(call, &points, values, num) : 0);
+    take_point_options(&points, values, num);
+    return FN(succeeded_)(PASS,
+                          points.query.mask ? read_points(call, &points, outputs, num_outputs) : 0);
 }
 #undef NO_DIFFERENCE

@@ -173,12 +173,30 @@ static int ray_info(const sl_call* call, sli mask, sl_string key, const sl_value
     return put_ray(call, mask, key, out);
 }
 
+/* The engine knows more of each ray; what it does not answer follows from the packet. */
+slf slv_rayinfo(const sl_call* call, sli mask, sl_string key, const sl_value* out) {
+    const slf told = key ? slv_ask_(call, mask, SL_MESSAGE_ray, key, out) : (slf){0};
+    const sli rest = mask & (told == 0.0f);
+    if (sl_none(rest))
+        return told;
+    return slv_select_f(rest, slv_spread_f((float)ray_info(call, rest, key, out)), told);
+}
+
 float slu_rayinfo(const sl_call* call, sl_string key, const sl_value* out) {
+    if (key && slu_ask_(call, SL_MESSAGE_ray, key, out) != 0)
+        return 1;
     return (float)ray_info(call, call->live, key, out);
 }
 
-slf slv_rayinfo(const sl_call* call, sli mask, sl_string key, const sl_value* out) {
-    return slv_f_of_mask(mask) * (float)ray_info(call, mask, key, out);
+static sls slv_label_(const sl_call* call, sli mask) {
+    sls label = slv_spread_s(call->services->intern(call->engine, ""));
+    const sl_value out = {SL_TYPE_string, 1, 0, &label};
+    ask_lanes(call, sl_bits(mask), SL_MESSAGE_ray, call->services->intern(call->engine, "label"),
+              &out);
+    return label;
+}
+static sl_string slu_label_(const sl_call* call) {
+    return slv_lane_s(slv_label_(call, call->live), sl_first_lane(call->live));
 }
 
 /* --- strings spread to lanes

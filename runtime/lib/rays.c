@@ -94,6 +94,58 @@ static void send(sl_ray_query* q, sl_string name, const sl_value* value) {
     }
 }
 
+/* What the call's output pairs ask for; what is not found keeps its value. */
+static void ask_outputs(sl_ray_query* q, const sl_value* outputs, int n) {
+    for (int i = 0; i + 1 < n; i += 2)
+        add_channel(q, text_of(&outputs[i]), &outputs[i + 1]);
+}
+
+static void take_outputs(const sl_ray_query* q, sli mask, const sl_value* outputs, int n) {
+    for (int i = 0; i + 1 < n; i += 2)
+        for (int k = 0; k < q->num_channels; k++) {
+            const sl_ray_channel* const c = &q->channel[k];
+            const sli set = sl_mask(c->set) & mask;
+            if (c->name == text_of(&outputs[i]) && c->type == outputs[i + 1].type && sl_any(set))
+                store_channel(&outputs[i + 1], set, c->values);
+        }
+}
+
+static void slv_take_outputs_(const sl_call* call, sli mask, const sl_ray_query* q,
+                              const sl_value* outputs, int n) {
+    (void)call;
+    take_outputs(q, mask, outputs, n);
+}
+static void slu_take_outputs_(const sl_call* call, const sl_ray_query* q, const sl_value* outputs,
+                              int n) {
+    take_outputs(q, call->live, outputs, n);
+}
+
+/* The number of the ray is the same in all lanes that are still in the loop. How many there are may
+ * differ and is the option `samples` of each lane; q->samples is that of the first. */
+static int whole(float x) {
+    return x > 0 && x < 1e9f ? (int)x : 0;
+}
+static void slv_gathers_(const sl_call* call, sli mask, sl_ray_query* q, slf angle, slf sample,
+                         slf samples) {
+    (void)call;
+    const int lane = sl_first_lane(mask);
+    slv_put_plane_(q->angle, angle);
+    q->sample = whole(sample[lane]);
+    q->samples = whole(samples[lane]);
+    set_number(q, SL_RAY_OPTION_samples, samples);
+}
+static void slu_gathers_(const sl_call* call, sl_ray_query* q, float angle, float sample,
+                         float samples) {
+    slv_gathers_(call, call->live, q, slv_spread_f(angle), slv_spread_f(sample),
+                 slv_spread_f(samples));
+}
+
+static void report_no_light(const sl_call* call) {
+    call->services->report(call->engine, 0,
+                           "shadow(\"raytrace\"): there is no light here, neither a light shader "
+                           "nor illuminance around it; the result is 0");
+}
+
 static void take_pairs(sl_ray_query* q, const sl_value* values, int n) {
     for (int i = 0; i + 1 < n; i += 2) {
         const sl_string name = is_text(&values[i]) ? text_of(&values[i]) : 0;

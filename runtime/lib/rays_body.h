@@ -78,6 +78,37 @@ F FN(fulltrace)(CALL, V p, V r, V* hitcolor, F* hitdist, V* Phit, V* Nhit, V* Pm
                            Rmiss);
 }
 
+void FN(gather_ray_d_ask)(CALL, sl_ray_query* q, sl_string category, V p, V d, V p_u, V d_u, V p_v,
+                          V d_v, F angle, F sample, F samples, const sl_value* values, int n,
+                          const sl_value* outputs, int num_outputs) {
+    FN(from_to_)(PASS, q, SL_RAYS_gather, p, d);
+    FN(footprint_)(q, p_u, d_u, p_v, d_v);
+    q->category = category;
+    take_pairs(q, values, n);
+    FN(gathers_)(PASS, q, angle, sample, samples);
+    ask_outputs(q, outputs, num_outputs);
+}
+F FN(gather_ray_d_answer)(CALL, const sl_ray_query* q, const sl_value* outputs, int num_outputs) {
+    FN(take_outputs_)(PASS, q, outputs, num_outputs);
+    return SEL(FN(hit_)(PASS, q), K(1), K(0));
+}
+F FN(gather_ray_d)(CALL, sl_string category, V p, V d, V p_u, V d_u, V p_v, V d_v, F angle,
+                   F sample, F samples, const sl_value* values, int n, const sl_value* outputs,
+                   int num_outputs) {
+    sl_ray_query q;
+    FN(gather_ray_d_ask)
+    (PASS, &q, category, p, d, p_u, d_u, p_v, d_v, angle, sample, samples, values, n, outputs,
+     num_outputs);
+    answer_now(call, &q);
+    return FN(gather_ray_d_answer)(PASS, &q, outputs, num_outputs);
+}
+F FN(gather_ray)(CALL, sl_string category, V p, V d, F angle, F sample, F samples,
+                 const sl_value* values, int n, const sl_value* outputs, int num_outputs) {
+    const V none = FN(f_to_3)(K(0));
+    return FN(gather_ray_d)(PASS, category, p, d, none, none, none, none, angle, sample, samples,
+                            values, n, outputs, num_outputs);
+}
+
 /* --- rays that only meet things: answered at once */
 
 F FN(trace_f)(CALL, V p, V r, const sl_value* values, int n) {
@@ -109,23 +140,46 @@ V FN(visibility)(CALL, V a, V b) {
     return FN(transmission)(PASS, a, b, 0, 0);
 }
 
+/* shadow("raytrace", P): what is missing of the light. */
+V FN(shadow_rays_c)(CALL, V p, V to_light, const sl_value* values, int n) {
+    sl_ray_query q;
+    FN(ask_)(PASS, &q, SL_RAYS_shadow, p, to_light);
+    take_pairs(&q, values, n);
+    answer_now(call, &q);
+    return FN(sub_3)(FN(f_to_3)(K(1)), FN(get_triple_)(PASS, q.C));
+}
+F FN(shadow_rays_f)(CALL, V p, V to_light, const sl_value* values, int n) {
+    const V c = FN(shadow_rays_c)(PASS, p, to_light, values, n);
+    return (c.x + c.y + c.z) * (1.0f / 3.0f);
+}
+F FN(shadow_no_light)(CALL) {
+    report_no_light(call);
+    return K(0);
+}
+
 /* --- cones about a normal: answered at once */
 
 static void FN(cone_)(CALL, sl_ray_query* q, int kind, V p, V n, F samples, const sl_value* values,
-                      int num) {
+                      int num, const sl_value* outputs, int num_outputs) {
     FN(ask_)(PASS, q, kind, p, n);
     FN(set_samples_)(q, samples);
     take_pairs(q, values, num);
+    ask_outputs(q, outputs, num_outputs);
     answer_now(call, q);
+    FN(take_outputs_)(PASS, q, outputs, num_outputs);
 }
-F FN(occlusion)(CALL, V p, V n, F samples, const sl_value* values, int num) {
+F FN(occlusion)(CALL, V p, V n, F samples, const sl_value* values, int num, const sl_value* outputs,
+                int num_outputs) {
     sl_ray_query q;
-    FN(cone_)(PASS, &q, SL_RAYS_occlusion, p, n, samples, values, num);
+    FN(cone_)
+    (PASS, &q, SL_RAYS_occlusion, p, n, samples, values, num, outputs, num_outputs);
     return FN(get_plane_)(PASS, q.C);
 }
-V FN(indirectdiffuse)(CALL, V p, V n, F samples, const sl_value* values, int num) {
+V FN(indirectdiffuse)(CALL, V p, V n, F samples, const sl_value* values, int num,
+                      const sl_value* outputs, int num_outputs) {
     sl_ray_query q;
-    FN(cone_)(PASS, &q, SL_RAYS_indirect, p, n, samples, values, num);
+    FN(cone_)
+    (PASS, &q, SL_RAYS_indirect, p, n, samples, values, num, outputs, num_outputs);
     return FN(get_triple_)(PASS, q.C);
 }
 

@@ -4,7 +4,8 @@
  * functions that see their context) and OUT(name) (symbol name with the width, hidden). Argument
  * order is that of sl_builtins.def; then: strings are uniform; a texture's channel is a float after
  * its name; a spline basis of NULL is "not given"; outputs are pointers, an X output is a sl_value;
- * `values, n` are n typed values (name/value pairs: n is even).
+ * `values, n` are n typed values (name/value pairs: n is even); `outputs, n` the pairs that set
+ * variables (sl_output_pairs.def).
  */
 
 /* operators */
@@ -133,13 +134,28 @@ V FN(transmission)(CALL, V a, V b, const sl_value* values, int n) OUT(transmissi
 F FN(rayhittest)(CALL, V p, V r, V* Ph, V* Nh) OUT(rayhittest);
 F FN(fulltrace)(CALL, V p, V r, V* hitcolor, F* hitdist, V* Phit, V* Nhit, V* Pmiss, V* Rmiss)
     OUT(fulltrace);
-F FN(occlusion)(CALL, V p, V n, F samples, const sl_value* values, int num) OUT(occlusion);
+F FN(gather_ray)(CALL, sl_string category, V p, V d, F angle, F sample, F samples,
+                 const sl_value* values, int n, const sl_value* outputs, int num_outputs)
+    OUT(gather_ray);
+F FN(gather_ray_d)(CALL, sl_string category, V p, V d, V p_u, V d_u, V p_v, V d_v, F angle,
+                   F sample, F samples, const sl_value* values, int n, const sl_value* outputs,
+                   int num_outputs) OUT(gather_ray_d);
+void FN(gather_ray_d_ask)(CALL, sl_ray_query* q, sl_string category, V p, V d, V p_u, V d_u, V p_v,
+                          V d_v, F angle, F sample, F samples, const sl_value* values, int n,
+                          const sl_value* outputs, int num_outputs) OUT(gather_ray_d_ask);
+F FN(gather_ray_d_answer)(CALL, const sl_ray_query* q, const sl_value* outputs, int num_outputs)
+    OUT(gather_ray_d_answer);
+V FN(shadow_rays_c)(CALL, V p, V to_light, const sl_value* values, int n) OUT(shadow_rays_c);
+F FN(shadow_rays_f)(CALL, V p, V to_light, const sl_value* values, int n) OUT(shadow_rays_f);
+F FN(shadow_no_light)(CALL) OUT(shadow_no_light);
+F FN(occlusion)(CALL, V p, V n, F samples, const sl_value* values, int num, const sl_value* outputs,
+                int num_outputs) OUT(occlusion);
 F FN(occlusion_map)(CALL, sl_string map, V p, V n, F a, const sl_value* values, int num)
     OUT(occlusion_map);
 F FN(occlusion_map_2)(CALL, sl_string map, V p, V n, F a, F b, const sl_value* values, int num)
     OUT(occlusion_map_2);
-V FN(indirectdiffuse)(CALL, V p, V n, F samples, const sl_value* values, int num)
-    OUT(indirectdiffuse);
+V FN(indirectdiffuse)(CALL, V p, V n, F samples, const sl_value* values, int num,
+                      const sl_value* outputs, int num_outputs) OUT(indirectdiffuse);
 V FN(indirectdiffuse_map)(CALL, sl_string map, V n, const sl_value* values, int num)
     OUT(indirectdiffuse_map);
 V FN(caustic)(CALL, V p, V n) OUT(caustic);
@@ -205,7 +221,8 @@ void FN(bake_f)(CALL, sl_string file, F s, F t, F value) OUT(bake_f);
 void FN(bake_3)(CALL, sl_string file, F s, F t, V value) OUT(bake_3);
 F FN(bake3d)(CALL, sl_string file, sl_string channels, V p, V n, const sl_value* values, int num)
     OUT(bake3d);
-F FN(texture3d)(CALL, sl_string file, V p, V n, const sl_value* values, int num) OUT(texture3d);
+F FN(texture3d)(CALL, sl_string file, V p, V n, const sl_value* values, int num,
+                const sl_value* outputs, int num_outputs) OUT(texture3d);
 
 /* messages and state: 1 and the output set, or 0 and the output as it was */
 F FN(message_atmosphere)(CALL, sl_string name, const sl_value* out) OUT(message_atmosphere);

@@ -47,7 +47,7 @@ color SampleEnvironment(point P; vector R; float Kr, blur; DECLARE_ENVPARAMS)
     color C = 0;
     float alpha = 0;
     if (Kr > .0001) {
-        if (envname == "") {
+        if (envname == "" || envname == "reflection") {
             C = trace(P, R);
         } else if (envspace == "NDC") {
             C = ReflMap(P, envname, blur, alpha);

@@ -673,6 +673,7 @@ TEST(Differences, EveryRowThatPromisesOneHasOne) {
         SL_INOUT = 0,
         SL_EXACT = 0,
         SL_WAITS = 0,
+        SL_ASKED = 0,
         SL_CHANNEL = 0,
         SL_LINEAR = 0,
         SL_HIDDEN = 0

@@ -71,7 +71,6 @@ public:
                std::span<float> out_extra, ShadeObserver* observer = nullptr);
 
 private:
-    static constexpr float very_far = 1e30f; // rays that long are meant to be endless
     // Variables that come from the geometry; the rest of a shader's needs is filled here.
     static constexpr std::uint64_t geometry_variables =
         1ULL << SL_VAR_P | 1ULL << SL_VAR_N | 1ULL << SL_VAR_Ng | 1ULL << SL_VAR_I |

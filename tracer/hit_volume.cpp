@@ -6,6 +6,7 @@
 #include "tracer/hit_shader.h"
 #include "tracer/pixel_trace.h"
 #include "tracer/ray_levels.h"
+#include "tracer/ray_packets.h"
 
 #include <algorithm>
 #include <cmath>

@@ -46,8 +46,10 @@ RayCone RayCone::from(const V3d& direction, const V3d& P_u, const V3d& P_v, cons
 }
 
 float RayCone::width(float t) const {
-    const double length = t;
-    return static_cast<float>(std::sqrt(std::sqrt(at(u, length) * at(v, length))));
+    const double by_u = at(u, t), by_v = at(v, t);
+    // At poles one direction has no neighbour: the other stands for both.
+    const double product = by_u == 0 ? by_v * by_v : by_v == 0 ? by_u * by_u : by_u * by_v;
+    return static_cast<float>(std::sqrt(std::sqrt(product)));
 }
 
 // w = (qu qv)^(1/4), so w'/w is a quarter of qu'/qu + qv'/qv.

@@ -10,6 +10,9 @@
 
 namespace trace {
 
+// Distance to nothing, as the Shading Language sees it; rays that long are meant to be endless.
+constexpr float very_far = 1e30f;
+
 struct PlainRay {
     base::V3f origin, direction;
     float tfar = 0, time = 0;

@@ -4,6 +4,7 @@
 #include "tracer/execution.h"
 #include "tracer/hemisphere.h"
 #include "tracer/ray_levels.h"
+#include "tracer/ray_packets.h"
 #include "tracer/transmission.h"
 
 #include <algorithm>
@@ -12,8 +13,6 @@
 namespace trace {
 
 namespace {
-
-constexpr float very_far = 1e30f;
 
 // The ray of a lane goes on for ever.
 void miss(sl_ray_query& query, std::uint32_t lane, int ray_level) {

@@ -24,7 +24,6 @@ using base::V3d;
 using base::V3f;
 
 constexpr std::uint32_t lanes_of_packet = geo::RayPacket::size;
-constexpr float very_far = 1e30f; // SL's distance to nothing
 
 V3f get(const float* planes, std::uint32_t lanes, std::uint32_t lane) {
     return {planes[lane], planes[lanes + lane], planes[2 * lanes + lane]};

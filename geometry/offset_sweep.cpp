@@ -122,6 +122,25 @@ rib::Primitive primitive(Form form) {
     return patch(form == Form::BicubicPatch);
 }
 
+// A point on the inner side of all of a shell; flat ones have none.
+V3d inside(Form form) {
+    switch (form) {
+    case Form::Cone:
+        return {0, 0, 0.5};
+    case Form::Paraboloid:
+        return {0, 0, 1};
+    case Form::BicubicPatch:
+        return {0, 0, -1};
+    default:
+        return {};
+    }
+}
+
+bool is_flat(Form form) {
+    return form == Form::Disk || form == Form::Ring || form == Form::Polygon ||
+           form == Form::BilinearPatch;
+}
+
 Mat4 turned(Random& rng) {
     return Mat4::rotate(360 * unit(rng), direction(rng));
 }
@@ -131,7 +150,8 @@ struct Pair {
     std::unique_ptr<World> world;
     QuietDiag quiet;
     SceneBuilder builder;
-    V3d centre[2];
+    V3d centre[2], inner[2];
+    bool flat[2];
     double size[2];
     std::string name;
 
@@ -140,7 +160,9 @@ struct Pair {
         const auto other = static_cast<Form>(rng() % static_cast<std::uint32_t>(Form::Count));
         size[0] = std::pow(10, -3 + 8 * unit(rng));
         size[1] = size[0] * std::pow(10, 2 * unit(rng) - 1);
-        const double offset = unit(rng) < 0.2 ? 0 : std::pow(10, 5 * unit(rng));
+        // Floats still tell a hundred places across the smaller one apart.
+        const double farthest = std::min(1e5, 1e5 * std::min(size[0], size[1]));
+        const double offset = unit(rng) < 0.2 ? 0 : std::pow(farthest, unit(rng));
         centre[0] = direction(rng) * offset;
         centre[1] = centre[0] + direction(rng) * ((size[0] + size[1]) * (4 + 20 * unit(rng)));
         add(rng, form, 0);
@@ -148,7 +170,18 @@ struct Pair {
         name = "form " + std::to_string(static_cast<int>(form)) + " size " +
                std::to_string(size[0]) + ", form " + std::to_string(static_cast<int>(other)) +
                " size " + std::to_string(size[1]) + ", offset " + std::to_string(offset);
-        world = builder.world(quiet.diag);
+        world = build();
+    }
+
+    // Diced as finely as a picture that they fill.
+    [[nodiscard]] std::unique_ptr<World> build() {
+        BuildOptions options;
+        options.num_threads = 1;
+        options.view.perspective = false;
+        options.view.pixels_per_unit_x = options.view.pixels_per_unit_y =
+            500 / std::min(size[0], size[1]);
+        options.view.corner_x = options.view.corner_y = 1e7; // no part is beside the picture
+        return World::build(builder.scene, options, quiet.diag);
     }
 
     void add(Random& rng, Form form, std::size_t which) {
@@ -156,6 +189,8 @@ struct Pair {
         const Mat4 place =
             Mat4::translate(centre[which]) * turned(rng) * Mat4::scale(stretch * size[which]);
         const rib::Primitive p = primitive(form);
+        inner[which] = point(place, inside(form));
+        flat[which] = is_flat(form);
         if (unit(rng) < 0.7) {
             builder.add(p, place);
             return;
@@ -204,10 +239,8 @@ std::vector<Place> places(const Pair& pair, std::size_t which, Random& rng, int 
         const Filled f(*pair.world, some, theirs);
         for (std::size_t i = 0; i < n; ++i) {
             Place p{f.vec(SL_VAR_P, i), f.vec(SL_VAR_Ng, i), pair.world->spawn(some[i])};
-            // The outer side of a shell is away from its axis or middle; a flat one has two.
-            const double away = dot(p.out, p.P - pair.centre[which]);
-            const bool is_curved = std::fabs(away) > 1e-3 * pair.size[which];
-            const bool flip = is_curved ? away < 0 : unit(rng) < 0.5;
+            const bool is_inner = dot(p.out, p.P - pair.inner[which]) < 0;
+            const bool flip = pair.flat[which] ? unit(rng) < 0.5 : is_inner;
             p.out = flip ? -p.out : p.out;
             if (base::length(p.P - pair.centre[which]) < 3 * pair.size[which]) {
                 found.push_back(p);
@@ -267,10 +300,12 @@ private:
 
     // A segment that leaves one and arrives at the other from outside both.
     void aim(const Place& a, const Place& b, RayPacket& packet, int i) {
-        const V3d d = b.P - a.P;
-        const double least = 1e-6 * base::length(d);
-        if (dot(d, a.out) > least && dot(d, b.out) < -least) {
-            set(segment_to(a.spawn.towards(V3f(d)), b.spawn), a, packet, i);
+        const ShadowSegment segment = segment_between(a.spawn, b.spawn);
+        const V3d from(segment.origin), to(segment.origin + segment.direction);
+        // Both ends, as they are after all, on the outer side of the other.
+        const double least = 1e-7 * (base::length(to - from) + base::length(b.P)); // P is rounded
+        if (dot(to - a.P, a.out) > least && dot(from - b.P, b.out) > least) {
+            set(segment, a, packet, i);
         }
     }
 };

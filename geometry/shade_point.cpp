@@ -523,7 +523,7 @@ void fill_variable_differences(const ShapeTable& table, std::span<const Hit> hit
 
 // Error bounds in units of float_eps: rounding P (1), Embree's subtraction of the origin from the
 // vertices and the rounding of these (4 and 1 of their reach, by the measurements in the tests),
-// the ray's way into an instance (8: float matrix, its float inverse, origin). Then along the
+// the ray's way into an instance (16: float matrix, its float inverse, origin). Then along the
 // normal, and away by one ulp. [pbrt4] 6.8.6
 SpawnPoint spawn_points(const ShapeTable& table, const Hit& hit) {
     const Shape& shape = table.shapes[hit.shape];
@@ -545,7 +545,7 @@ SpawnPoint spawn_points(const ShapeTable& table, const Hit& hit) {
         const V3d shift = V3d(m[3][0], m[3][1], m[3][2]) - table.objects[shape.object].centre;
         const V3d in_trace =
             spread(placement.object_from_parent, absolute(P), false) + absolute(shift);
-        bound += spread(placement.parent_from_object, in_trace, false) * 8;
+        bound += spread(placement.parent_from_object, in_trace, false) * 16;
     }
     bound = bound * float_eps;
 

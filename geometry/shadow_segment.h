@@ -23,4 +23,8 @@ struct ShadowSegment {
 // To a place on a surface: ends outside of that surface's error and the ray's.
 [[nodiscard]] ShadowSegment segment_to(const base::V3f& origin, const SpawnPoint& end);
 
+// From a place on a surface; it starts on the side the end lies on.
+[[nodiscard]] ShadowSegment segment_between(const SpawnPoint& from, const SpawnPoint& end);
+[[nodiscard]] ShadowSegment segment_between(const SpawnPoint& from, const base::V3f& end);
+
 } // namespace geo

@@ -36,9 +36,9 @@ struct LightSample {
 // rounding error; points a shader made up (a march through a volume) lie on nothing.
 class ShadowOrigins {
 public:
-    // Of a point of the packet at `first` of the asker's batch.
-    base::V3f origin(const Execution& asker, std::uint64_t serial, std::uint32_t first,
-                     std::uint32_t lane, const base::V3f& P, const base::V3f& towards);
+    // Of a point of the packet at `first` of the asker's batch; null: it starts as it is.
+    const geo::SpawnPoint* at(const Execution& asker, std::uint32_t first, std::uint32_t lane,
+                              const base::V3f& P);
 
 private:
     const Execution* asker_ = nullptr;

@@ -212,15 +212,15 @@ const geo::Hit* hit_at(const Execution& asker, std::size_t point, const base::V3
     return &subject->hits[point];
 }
 
-base::V3f ShadowOrigins::origin(const Execution& asker, std::uint64_t serial, std::uint32_t first,
-                                std::uint32_t lane, const base::V3f& P, const base::V3f& towards) {
+const geo::SpawnPoint* ShadowOrigins::at(const Execution& asker, std::uint32_t first,
+                                         std::uint32_t lane, const base::V3f& P) {
     const geo::Hit* hit = hit_at(asker, first + lane, P);
     if (hit == nullptr) {
-        return P;
+        return nullptr;
     }
-    if (asker_ != &asker || serial_ != serial || first_ != first) {
+    if (asker_ != &asker || serial_ != asker.serial || first_ != first) {
         asker_ = &asker;
-        serial_ = serial;
+        serial_ = asker.serial;
         first_ = first;
         known_ = 0;
     }
@@ -228,7 +228,7 @@ base::V3f ShadowOrigins::origin(const Execution& asker, std::uint64_t serial, st
         spawn_[lane] = asker.frame.world->spawn(*hit);
         known_ |= 1U << lane;
     }
-    return spawn_[lane].towards(towards);
+    return &spawn_[lane];
 }
 
 // To a place on a surface the ray ends outside that surface's own error; to a point in space it
@@ -238,19 +238,20 @@ geo::ShadowSegment LightRun::shadow_segment(const LightSample& sample, std::uint
     const base::V3f P = point(lane);
     const base::V3f L(sample.L[lane], sample.L[LightSample::lanes + lane],
                       sample.L[2 * LightSample::lanes + lane]);
-    const base::V3f origin = origins.origin(*asker_, serial_, first_, lane, P, L);
+    const geo::SpawnPoint* from = origins.at(*asker_, first_, lane, P);
     if (info_->from_infinity) {
-        return {origin, base::normalize(L), std::numeric_limits<float>::infinity()};
+        return {from != nullptr ? from->towards(L) : P, base::normalize(L),
+                std::numeric_limits<float>::infinity()};
     }
     const base::V3f end = P + L;
     if (info_->area != nullptr) {
-        const geo::SpawnPoint spawn = asker_->frame.world->spawn(sample.on[lane]);
-        const float error = geo::far_end_error(end, L) + 2 * base::length(spawn.front - spawn.back);
-        if (base::length(end - spawn.front) <= error) { // else the shader moved the light
-            return geo::segment_to(origin, spawn);
+        const geo::SpawnPoint place = asker_->frame.world->spawn(sample.on[lane]);
+        const float error = geo::far_end_error(end, L) + 2 * base::length(place.front - place.back);
+        if (base::length(end - place.front) <= error) { // else the shader moved the light
+            return from != nullptr ? geo::segment_between(*from, place) : geo::segment_to(P, place);
         }
     }
-    return geo::segment_to(origin, end);
+    return from != nullptr ? geo::segment_between(*from, end) : geo::segment_to(P, end);
 }
 
 void LightRun::trace_shadows(std::int32_t index, std::uint32_t mask, ShadowOrigins& origins) {

@@ -29,9 +29,9 @@ PixelFilter "box" 1 1
 
 class Bench:
     def __init__(self, build):
-        self.render_program = ROOT / build / "tracer" / "render"
+        self.render_program = pathlib.Path(build).resolve() / "tracer" / "render"
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="lights_bench_"))
-        self.shaders = f"{ROOT}/testsuite/shaders:{ROOT}/{build}/shaders:{ROOT}/shaders"
+        self.shaders = f"{ROOT}/testsuite/shaders:{pathlib.Path(build).resolve()}/shaders:{ROOT}/shaders"
 
     def render(self, text, size=128, samples=2, repeat=3):
         """The picture and the least time it took to trace and shade, in seconds."""

@@ -28,7 +28,7 @@ struct RayQuestion {
     Triple3 P{0, 0, 0}, D{0, 0, 0};
     Triple3 P_u{0, 0, 0}, P_v{0, 0, 0}, D_u{0, 0, 0}, D_v{0, 0, 0};
     double angle = 0; // gather
-    int sample = 0; // of option "samples"
+    int sample = 0;
     std::string category;
     std::map<std::string, Value> options; // name/value pairs
     std::map<std::string, Type> wanted;   // pairs that set a variable

@@ -93,9 +93,6 @@ RayQuestion ray_question(const BuiltinRow& row, int kind, const std::vector<Valu
     for (std::size_t i = row.args.size(); row.takes_pairs && i + 1 < args.size(); i += 2) {
         q.options[args[i].text()] = args[i + 1];
     }
-    if (kind == SL_RAYS_gather) {
-        q.options["samples"] = args[next + 2];
-    }
     return q;
 }
 

@@ -120,8 +120,8 @@ static void slu_take_outputs_(const sl_call* call, const sl_ray_query* q, const 
     take_outputs(q, call->live, outputs, n);
 }
 
-/* The number of the ray is the same in all lanes that are still in the loop. How many there are may
- * differ and is the option `samples` of each lane; q->samples is that of the first. */
+/* The number of the ray is the same in all lanes that are still in the loop; how many there are is
+ * taken from the first. */
 static int whole(float x) {
     return x > 0 && x < 1e9f ? (int)x : 0;
 }
@@ -132,7 +132,6 @@ static void slv_gathers_(const sl_call* call, sli mask, sl_ray_query* q, slf ang
     slv_put_plane_(q->angle, angle);
     q->sample = whole(sample[lane]);
     q->samples = whole(samples[lane]);
-    set_number(q, SL_RAY_OPTION_samples, samples);
 }
 static void slu_gathers_(const sl_call* call, sl_ray_query* q, float angle, float sample,
                          float samples) {

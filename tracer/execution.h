@@ -28,6 +28,7 @@ class ShadeopLibrary;
 
 namespace trace {
 
+struct DeepestMiss;
 struct ShaderEntry;
 class ShaderSet;
 class IndirectLight;
@@ -134,6 +135,9 @@ struct BatchSubject {
     // Differences of P at the auxiliary points, planes of the batch's stride; null: not known.
     const float *P_u = nullptr, *P_v = nullptr;
     RaySubject rays{};
+    // Deepest rays that met nothing, of those the points asked for (shade_job.h); null: nobody
+    // asks.
+    std::vector<DeepestMiss>* misses = nullptr;
 };
 
 class Execution {

@@ -93,6 +93,7 @@ void HitShader::begin(ShadeJob& job, const Group& group,
     job.is_displaced = false;
     job.subject = {};
     job.subject.attributes = group.attributes;
+    job.subject.misses = &job.misses;
     RaySubject& rays = job.subject.rays;
     rays.level = rays_.level;
     rays.kind = rays_.kind;

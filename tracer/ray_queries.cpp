@@ -53,7 +53,7 @@ void answer_rays(Execution& execution, sl_ray_query& query) {
     case SL_RAYS_hittest:
     case SL_RAYS_gather: {
         const DeeperShader deeper(*thread);
-        const RayAsk ask{&query, &execution, nullptr};
+        const RayAsk ask{&query, &execution};
         deeper.wave().answer({&ask, 1});
         return;
     }

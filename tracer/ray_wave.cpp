@@ -87,7 +87,7 @@ void RayWave::answer(std::span<ShadeJob* const> waiting) {
                 continue;
             }
             if (is_mine(*query)) {
-                waiting_asks_.push_back({query, &*job->surface_execution, job});
+                waiting_asks_.push_back({query, &*job->surface_execution});
             } else {
                 answer_rays(*job->surface_execution, *query);
             }
@@ -422,9 +422,9 @@ void RayWave::fold(const Ray& ray, std::size_t slot) {
     const std::uint32_t lanes = query.lanes, lane = ray.lane;
     const auto share = 1 / static_cast<float>(num_samples(query, lane));
     const Sample& seen = colors_[slot];
-    const bool sees_map = has_text(query.text[SL_RAY_TEXT_environmentmap]);
-    const base::Color beyond =
-        sees_map && misses_[slot].level > 0 ? environment(ray) : base::Color();
+    const bool sees_map = has_text(query.text[SL_RAY_TEXT_environmentmap]) &&
+                          *std::min_element(seen.opacity, seen.opacity + 3) < 1;
+    const base::Color beyond = sees_map ? environment(ray) : base::Color();
     const float behind[] = {beyond.r, beyond.g, beyond.b};
     for (std::uint32_t k = 0; k < 3; ++k) {
         query.C[k * lanes + lane] +=
@@ -515,8 +515,11 @@ void RayWave::end_answer(std::size_t index) {
         const std::uint32_t hits = hits_of_lane_[index * SL_LANES_MAX + lane];
         query.distance[lane] =
             hits > 0 ? query.distance[lane] / static_cast<float>(hits) : very_far;
-        if (ask.job != nullptr && query.level_missed[lane] > 0) {
-            note_miss(*ask.job, query, lane);
+        const BatchSubject* subject = ask.execution->subject;
+        const bool is_of_point =
+            subject != nullptr && subject->misses != nullptr && ask.execution->asked_by == nullptr;
+        if (is_of_point && is_shaded(query) && query.level_missed[lane] > 0) {
+            note_miss(*subject, query, lane);
         }
         if (thread_.trace != nullptr && (query.mask >> lane & 1U) != 0) {
             tell(ask, lane);
@@ -537,14 +540,16 @@ void RayWave::tell(const RayAsk& ask, std::uint32_t lane) const {
 }
 
 // The tree of the ray that met this point grows by these.
-void RayWave::note_miss(ShadeJob& job, const sl_ray_query& query, std::uint32_t lane) {
-    job.misses.resize(job.count());
+void RayWave::note_miss(const BatchSubject& subject, const sl_ray_query& query,
+                        std::uint32_t lane) {
+    std::vector<DeepestMiss>& misses = *subject.misses;
+    misses.resize(subject.hits.size());
     const std::size_t point = query.first + lane;
-    if (point >= job.misses.size() ||
-        static_cast<float>(job.misses[point].level) >= query.level_missed[lane]) {
+    if (point >= misses.size() ||
+        static_cast<float>(misses[point].level) >= query.level_missed[lane]) {
         return;
     }
-    DeepestMiss& miss = job.misses[point];
+    DeepestMiss& miss = misses[point];
     miss.level = static_cast<int>(query.level_missed[lane]);
     for (std::uint32_t k = 0; k < 3; ++k) {
         miss.origin[k] = query.Pmiss[k * query.lanes + lane];

@@ -19,7 +19,6 @@ namespace trace {
 struct RayAsk {
     sl_ray_query* query = nullptr;
     const Execution* execution = nullptr;
-    ShadeJob* job = nullptr; // that waits; null: a shader runs meanwhile
 };
 
 class RayWave : private ShadeObserver {
@@ -85,7 +84,8 @@ private:
     [[nodiscard]] base::Color environment(const Ray& ray) const;
     void end_answer(std::size_t index);
     void tell(const RayAsk& ask, std::uint32_t lane) const;
-    static void note_miss(ShadeJob& job, const sl_ray_query& query, std::uint32_t lane);
+    static void note_miss(const BatchSubject& subject, const sl_ray_query& query,
+                          std::uint32_t lane);
 
     const FrameContext& frame_;
     RayLayers& layers_;

@@ -116,8 +116,8 @@ def penumbra():
     """A square light above balls and tiles."""
     text = CAMERA + "WorldBegin\nTranslate 0 -.3 5\nRotate -20 1 0 0\n" + 'LightSource "ambientlight" 1 "intensity" .1\n'
     text += ('Attribute "light" "string shadows" "on" "integer nsamples" 16\nAttributeBegin\nTranslate 0 3 0\n'
-             'AreaLightSource "pointlight" 2 "intensity" 12\n'
-             'Polygon "P" [-.5 0 -.5 .5 0 -.5 .5 0 .5 -.5 0 .5]\nAttributeEnd\n')
+             'AreaLightSource "arealight" 2 "intensity" 12\n'
+             'Polygon "P" [-.5 0 -.5 .5 0 -.5 .5 0 .5 -.5 0 .5]\nAttributeEnd\nIlluminate 2 1\n')
     text += wall([(-4, -1, -3), (4, -1, -3), (4, -1, 4), (-4, -1, 4)], 6, ".8 .8 .7")
     for i in range(5):
         text += (f'AttributeBegin\nColor .8 .5 .4\nSurface "matte"\nTranslate {1.1 * (i - 2):.2f} {-.5 + .3 * (i % 3):.2f} '

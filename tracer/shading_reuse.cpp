@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracer/shading_reuse.h"
 
+#include "tracer/light_choice.h"
 #include "tracer/lights.h"
 #include "tracer/pixel_trace.h"
 #include "tracer/ray_levels.h"
@@ -19,15 +20,11 @@ constexpr float steepest = 4;
 
 // In the values that are shown, 0..1. A shade that is off by `noise` shows as that much at
 // worst, a curved one by a ninth of how far it is off the plane of its neighbours.
-static float E(const char* n, float d) {
-    const char* v = getenv(n);
-    return v ? (float)atof(v) : d;
-}
-static const float noise = E("R_NOISE", 0.004f);
-static const float bend = E("R_BEND", 0.036f);
-static const float second_noise = E("R_SECOND", 0.010f);
+constexpr float noise = 0.004f;
+constexpr float bend = 0.036f;
+constexpr float second_noise = 0.010f;
 // The parts of a split cell, off the plane through them.
-static const float part_noise = E("R_PART", 0.016f);
+constexpr float part_noise = 0.016f;
 // A cell of fewer samples is not worth being split.
 constexpr std::uint32_t least_to_split = 9;
 
@@ -68,13 +65,16 @@ bool reads_time(const ShadingClass& c) {
     return (c.surface->object().needed & (bit(SL_VAR_time) | bit(SL_VAR_dtime))) != 0;
 }
 
-// Their shadows, or what they give, come from rays or numbers drawn at random.
+// What they give, or their shadows, is drawn at random: places on areas, discs of distant lights,
+// some of many lights.
 bool has_noisy_lights(const ShadingClass& c, const FrameContext& frame) {
     const auto is_noisy = [&](rib::LightId id) {
-        return frame.scene.lights[id].is_area || !(*frame.lights)[id].reusable;
+        const LightInfo& light = (*frame.lights)[id];
+        return light.area != nullptr || light.from_infinity || !light.reusable;
     };
     return std::ranges::any_of(c.lights.directional, is_noisy) ||
-           std::ranges::any_of(c.lights.ambient, is_noisy);
+           std::ranges::any_of(c.lights.ambient, is_noisy) ||
+           c.lights.directional.size() > light_choice_options(frame.scene.options).all_up_to;
 }
 
 } // namespace

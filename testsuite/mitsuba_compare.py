@@ -60,8 +60,8 @@ def surfaces(half_light):
     ]
     walls += [(WHITE, face) for face in block(-.38, 4.35, .3, .3, 1.2) + block(.4, 3.75, .28, -.35, .6)]
     h, y, z = half_light, .999, 4.0
-    # Seen from below the corners go round so that N points down.
-    walls.append((None, quad((-h, y, z - h), (-h, y, z + h), (h, y, z + h), (h, y, z - h))))
+    # In this order of the corners N points down, in both renderers.
+    walls.append((None, quad((h, y, z - h), (h, y, z + h), (-h, y, z + h), (-h, y, z - h))))
     return walls
 
 
@@ -75,6 +75,10 @@ light evenarea(float intensity = 1; color lightcolor = 1;)
     illuminate (P, N, PI / 2)
         Cl = intensity * lightcolor * (normalize(L).normalize(N)) / (L.L);
 }
+"""
+
+EMITTER = """// Shines on the side N points to only.
+surface emitter() { Oi = 1; Ci = (N.I < 0) ? Cs : color 0; }
 """
 
 
@@ -95,13 +99,14 @@ Sides 2
 """
     light = [p for color, p in surfaces(half_light) if color is None][0]
     radiance = " ".join(map(str, RADIANCE))
-    text += f'Surface "constant"\nColor {radiance}\n'
+    text += f'Surface "emitter"\nColor {radiance}\n'
     if scene == "area":
         area = 4 * half_light * half_light
+        text += "AttributeBegin\n"
         text += f'AreaLightSource "evenarea" 2 "intensity" [{area / math.pi:.9g}] "lightcolor" [{radiance}]\n'
     text += rib_polygon(light)
     if scene == "area":
-        text += 'AreaLightSource "null" 3\nIlluminate 2 1\n'
+        text += "AttributeEnd\nIlluminate 2 1\n"
     text += 'Surface "matte"\n'
     for color, points in surfaces(half_light):
         if color is not None:
@@ -112,8 +117,9 @@ Sides 2
 
 def ours(build, folder, scene, half_light, size, samples):
     write_rib(os.path.join(folder, scene + ".rib"), scene, half_light, size, samples)
-    with open(os.path.join(folder, "evenarea.sl"), "w", encoding="utf-8") as file:
-        file.write(AREA_LIGHT)
+    for name, source in (("evenarea.sl", AREA_LIGHT), ("emitter.sl", EMITTER)):
+        with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
+            file.write(source)
     render = [os.path.abspath(os.path.join(build, "tracer", "render")), "--progress=none", scene + ".rib"]
     subprocess.run(render, cwd=folder, check=True)  # compiles the shaders
     start = time.monotonic()
@@ -137,8 +143,7 @@ def mitsuba_scene(mi, half_light, size, samples):
     for i, (color, points) in enumerate(surfaces(half_light)):
         mesh = mi.Mesh(f"quad{i}", vertex_count=4, face_count=2)
         params = mi.traverse(mesh)
-        # The Interface is left-handed: its N lies on the other side of the same corners.
-        params["vertex_positions"] = numpy.array(points[::-1], dtype=numpy.float32).ravel()
+        params["vertex_positions"] = numpy.array(points, dtype=numpy.float32).ravel()
         params["faces"] = numpy.array([0, 1, 2, 0, 2, 3], dtype=numpy.uint32)
         params.update()
         path = os.path.join(tempfile.gettempdir(), f"perigee_{os.getpid()}_{i}.ply")

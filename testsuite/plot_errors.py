@@ -90,7 +90,7 @@ BLURRED = """surface blurred(float samples = 4, cone = .12;)
 {
     vector R = reflect(normalize(I), faceforward(normalize(N), I));
     Oi = 1;
-    Ci = Cs * trace(P, R, "samples", samples, "samplecone", cone);
+    Ci = Cs * color trace(P, R, "samples", samples, "samplecone", cone);
 }
 """
 

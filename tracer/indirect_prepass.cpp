@@ -131,6 +131,7 @@ IrradianceRecord IndirectPrepass::make_record(const DiffusePoint& point, Worker&
     const float error = point.settings.max_error;
     record.radius = record_radius(record, harmonic_mean, least_reach_px * px / error,
                                   point.settings.max_pixel_distance * px / error);
+    limit_gradients(record);
     return record;
 }
 

@@ -71,6 +71,23 @@ float record_radius(const IrradianceRecord& record, float harmonic_mean, float l
     return std::clamp(std::min(harmonic_mean, by_gradient), least, std::max(least, greatest));
 }
 
+namespace {
+
+void cut(std::array<base::V3f, 3>& gradient, float longest) {
+    const float length = largest(gradient);
+    for (base::V3f& g : gradient) {
+        g *= length > longest ? longest / length : 1;
+    }
+}
+
+} // namespace
+
+void limit_gradients(IrradianceRecord& record) {
+    const float mean = std::max({record.mean.r, record.mean.g, record.mean.b});
+    cut(record.translation, mean / record.radius);
+    cut(record.rotation, mean);
+}
+
 std::size_t IrradianceCache::CellHash::operator()(const Cell& cell) const {
     std::uint64_t h = static_cast<std::uint64_t>(cell.x) * 0x9e3779b97f4a7c15ULL;
     h = (h ^ static_cast<std::uint64_t>(cell.y)) * 0xbf58476d1ce4e5b9ULL;

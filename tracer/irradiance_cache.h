@@ -31,13 +31,17 @@ struct IrradianceRecord {
 // all of it at most) and within the least and the greatest [Krivanek06].
 [[nodiscard]] float record_radius(const IrradianceRecord& record, float harmonic_mean, float least,
                                   float greatest);
+// Gradients that would change all of the light within the radius, or within a turn of a radian, say
+// more about the few rays they come from than about the surface: they are cut to that.
+void limit_gradients(IrradianceRecord& record);
 
 class IrradianceCache {
 public:
     // Records reach this much farther when a picture is rendered than when it is decided where new
     // ones are needed: between the points that were asked all are covered.
     static constexpr float slack = 1.4f;
-    // And this much where they are one of many: where rays of other points hit. Their errors cancel.
+    // And this much where they are one of many: where rays of other points hit. Their errors
+    // cancel.
     static constexpr float far_slack = 3;
 
     struct Point {

@@ -115,6 +115,17 @@ TEST(RecordRadius, IsBoundedByGradientAndPixels) {
     EXPECT_FLOAT_EQ(record_radius(r, 5, 0.1f, 100), 0.5f);
 }
 
+TEST(LimitGradients, NoMoreThanAllOfTheLight) {
+    IrradianceRecord r = record_at({0, 0, 0}, 4, 2);
+    r.translation[0] = {3, 0, 4};
+    r.translation[1] = {0, 0.25f, 0};
+    r.rotation[2] = {0, 1, 0};
+    limit_gradients(r);
+    EXPECT_NEAR(base::length(r.translation[0]), 0.5f, 1e-6f); // 2 within 4
+    EXPECT_NEAR(r.translation[1].y, 0.025f, 1e-6f);           // all channels alike
+    EXPECT_EQ(r.rotation[2].y, 1.0f);
+}
+
 // --- files
 
 class IrradianceFiles : public testing::Test {

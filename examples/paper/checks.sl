@@ -15,7 +15,7 @@ surface checks(float Ka = 1, Kd = .8, Kr = .15, columns = 12, rows = 12; color o
     color tile = mix(Cs, other, odd);
     color shine = 0;
     if (Kr > 0)
-        shine = Kr * trace(P, reflect(normalize(I), Nf));
+        shine = Kr * color trace(P, reflect(normalize(I), Nf));
     Oi = Os;
     Ci = Os * (tile * (Ka * ambient() + Kd * diffuse(Nf)) + shine);
 }

@@ -10,9 +10,9 @@ surface glass(float eta = .6667, Ks = .6, roughness = .02;)
     float kr, kt;
     vector R, T;
     fresnel(In, Nf, index, kr, kt, R, T);
-    color c = kr * trace(P, R);
+    color c = kr * color trace(P, R);
     if (kt > 0)
-        c += Cs * kt * trace(P, T);
+        c += Cs * kt * color trace(P, T);
     Oi = 1;
     Ci = c + Ks * specular(Nf, -In, roughness);
 }

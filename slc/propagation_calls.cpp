@@ -394,7 +394,7 @@ constexpr FootprintForm footprint_forms[] = {{"texture_c", "texture_c_d", 2, 0, 
                                              {"bump_st", "bump_d", 5, 2, false},
                                              {"trace_c", "trace_c_d", 0, 2, false},
                                              {"fulltrace", "fulltrace_d", 0, 2, false},
-    {"gather_ray", "gather_ray_d", 1, 2, false}};
+                                             {"gather_ray", "gather_ray_d", 1, 2, false}};
 
 const FootprintForm& footprint_form(const Stmt& s) {
     return *std::find_if(std::begin(footprint_forms), std::end(footprint_forms),

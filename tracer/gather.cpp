@@ -60,6 +60,26 @@ Gather::Gather(const Sampler& sampler, const FilterWeights& weights,
       per_pixel_(static_cast<std::size_t>(sampler.per_pixel())),
       per_quarter_(per_pixel_ / quarters), sources_(pixels_.area()), reach_(reach_of(weights)) {
     make_runs();
+    if (sampler.settings().least > 0) {
+        make_mean_weights();
+    }
+}
+
+// Over the samples of a few patterns: stratified, so close to the integrals.
+void Gather::make_mean_weights() {
+    const std::size_t num_patterns = std::min<std::size_t>(sampler_.num_patterns(), 32);
+    const FilterWeights& weights = *reach_.weights;
+    mean_weights_.assign(weights.neighbours() * quarters, 0);
+    const float share = 1 / static_cast<float>(num_patterns * per_quarter_);
+    for (std::size_t p = 0; p < num_patterns; ++p) {
+        for (std::size_t i = 0; i < mean_weights_.size(); ++i) {
+            const float* w = weights.weights(p * weights.neighbours() + i / quarters) +
+                             i % quarters * per_quarter_;
+            for (std::size_t k = 0; k < per_quarter_; ++k) {
+                mean_weights_[i] += w[k] * share;
+            }
+        }
+    }
 }
 
 Gather::Reach Gather::reach_of(const FilterWeights& weights) const {

@@ -49,9 +49,11 @@ private:
 
     [[nodiscard]] Reach reach_of(const FilterWeights& weights) const;
     void make_runs();
+    void make_mean_weights();
     void add_row(const SampleBuffer& buffer, int y, int x0, int x1);
     template <class Body>
-    void for_quarters(const Source& source, const float* weights, const Body& body) const;
+    void for_quarters(const Source& source, std::size_t near, const float* weights,
+                      const Body& body) const;
     template <class Body>
     void for_samples(const Source* own, const Reach& reach, const Body& body) const;
     [[nodiscard]] Sum filtered(const Source* own) const;
@@ -76,6 +78,7 @@ private:
     std::vector<Source> sources_;                 // of pixels_, row by row
     Reach reach_;
     std::vector<Run> runs_;
+    std::vector<float> mean_weights_; // adaptive: of the picture's filter, [neighbour][quarter]
 };
 
 // Calls body(source, sample, weight) for all samples in reach, in the one order there is.
@@ -91,7 +94,7 @@ void Gather::for_samples(const Source* own, const Reach& reach, const Body& body
         const FilterWeights::Span span = weights.span(slot);
         const float* w = weights.weights(slot);
         if (source.begins != nullptr) {
-            for_quarters(source, w, body);
+            for_quarters(source, &reach == &reach_ ? k : num_near, w, body);
             continue;
         }
         for (std::size_t s = span.first; s < span.last; ++s) {
@@ -100,15 +103,25 @@ void Gather::for_samples(const Source* own, const Reach& reach, const Body& body
     }
 }
 
-// A quarter counts by its area, however many samples it has.
+// A quarter counts by what the filter has there, however many samples it has: few samples meet the
+// filter's mean by chance only, and the picture would show it at every edge (film-012).
 template <class Body>
-void Gather::for_quarters(const Source& source, const float* weights, const Body& body) const {
+void Gather::for_quarters(const Source& source, std::size_t near, const float* weights,
+                          const Body& body) const {
     std::size_t s = 0;
     for (std::size_t q = 0; q < quarters; ++q, weights += per_quarter_) {
         const std::size_t count = source.begins[q + 1] - source.begins[q];
         const float density = static_cast<float>(per_quarter_) / static_cast<float>(count);
+        float missing = 0;
+        if (near < mean_weights_.size() / quarters) {
+            float sum = 0;
+            for (std::size_t k = 0; k < count; ++k) {
+                sum += weights[k];
+            }
+            missing = mean_weights_[near * quarters + q] - sum / static_cast<float>(count);
+        }
         for (std::size_t k = 0; k < count; ++k, ++s) {
-            body(source, s, weights[k] * density);
+            body(source, s, (weights[k] + missing) * density);
         }
     }
 }

@@ -189,6 +189,10 @@ sl_status gathering(const sl_batch* batch, std::uint32_t first, std::uint32_t co
                     sl_frame* frame) {
     auto* own = reinterpret_cast<GatherFrame*>(frame);
     const float samples = block_of(batch).samples;
+    if (frame->state == 0) { // all else in a new frame is what was there before
+        std::fill_n(own->sum, 3 * lanes, 0.0f);
+        own->round = 0;
+    }
     for (std::uint32_t lane = 0; frame->state == 1 && lane < count; ++lane) {
         const sl_ray_query& rays = frame->rays;
         if ((rays.hit >> lane & 1U) != 0) {

@@ -79,7 +79,9 @@ struct Accel::Impl {
         return true;
     }
 
-    void to_hit(const RTCRay8& ray, int i, const embree::Crossing& met, Hit& hit) const;
+    // Inlined: as a call it costs camera rays a hundredth of their time.
+    [[gnu::always_inline]] void to_hit(const RTCRay8& ray, int i, const embree::Crossing& met,
+                                       Hit& hit) const;
     void refine(const embree::Geometry::Member& member, const Mat4* trace_from_cam,
                 const RTCRay8& ray, int i, Hit& hit) const;
     void to_crossings(const RTCRay8& rays, const embree::OcclusionContext::Ray* met,
@@ -208,7 +210,8 @@ void Accel::finish(std::span<const TraceItem> items) {
 }
 
 // What Embree names, in our names; t of a miss means nothing.
-void Accel::Impl::to_hit(const RTCRay8& ray, int i, const embree::Crossing& met, Hit& hit) const {
+inline void Accel::Impl::to_hit(const RTCRay8& ray, int i, const embree::Crossing& met,
+                                Hit& hit) const {
     hit = Hit{};
     hit.time = ray.time[i];
     if (met.geometry == RTC_INVALID_GEOMETRY_ID) {
